@@ -1,0 +1,60 @@
+// pmesh extract: one level of detail of a PM file as a mesh file.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "cli/exit_codes.h"
+#include "cli/verb.h"
+#include "cli/wish_options.h"
+#include "client/apply_wish.h"
+#include "core/io/export.h"
+#include "core/pm/pm_file.h"
+#include "protocol/lod_request.h"
+
+namespace pmesh::cli {
+namespace {
+
+struct ExtractOptions {
+  std::string file;
+  std::string output;
+  WishOptions wish;
+};
+
+int run_extract(const ExtractOptions& options) {
+  const std::optional<MeshFormat> format = mesh_format_of(options.output);
+  if (format != MeshFormat::ply && format != MeshFormat::obj) {
+    return report("extract", {ErrorCode::usage, options.output + ": expected .ply or .obj"});
+  }
+  const Result<PmFile> file = PmFile::open(options.file);
+  if (!file) return report("extract", file.error());
+  const LodRequest wish = options.wish.wish();
+  const Result<Resolution> resolved = resolve(wish, file->index());
+  if (!resolved) return report("extract", resolved.error());
+  const std::size_t chunks = std::min<std::size_t>(resolved->chunk_count, file->whole_chunks());
+  Result<RefinableMesh> mesh = file->decode(chunks);
+  if (!mesh) return report("extract", mesh.error());
+  const Result<AppliedWish> applied = apply_wish(wish, file->index(), *mesh);
+  if (!applied) return report("extract", applied.error());
+  const Status written =
+      export_mesh(options.output, mesh->snapshot(), file->index().header.lattice);
+  if (!written) return report("extract", written.error());
+  if (!applied->reached) {
+    std::fprintf(stderr, "pmesh extract: the wish is out of reach: wrote %u faces, %u vertices\n",
+                 applied->faces, applied->vertices);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_extract(CLI::App& app, int& exit_status) {
+  auto options = std::make_shared<ExtractOptions>();
+  CLI::App* verb = app.add_subcommand("extract", "Write one level of detail of a PM file");
+  verb->add_option("FILE", options->file, "PM file, whole or partial")->required();
+  options->wish.add_to(*verb);
+  verb->add_option("-o,--output", options->output, "Mesh file to write: .ply or .obj")->required();
+  verb->callback([options, &exit_status] { exit_status = run_extract(*options); });
+}
+
+}  // namespace pmesh::cli

@@ -1,0 +1,156 @@
+// pmesh fetch: any level of detail of a mesh, from a server, a plain web host or a file.
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/exit_codes.h"
+#include "cli/progress_bar.h"
+#include "cli/verb.h"
+#include "cli/wish_options.h"
+#include "client/fetch_to_file.h"
+
+namespace pmesh::cli {
+namespace {
+
+struct FetchArguments {
+  std::string url;
+  std::string output;
+  WishOptions wish;
+  bool json = false;
+  bool force = false;
+  bool quiet = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+CancelFlag interrupted{false};
+
+// The first CTRL-C ends the fetch with what it has; a second one kills the process.
+void cancel_on_interrupt() {
+  static_assert(CancelFlag::is_always_lock_free);
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupted.store(true); };
+  action.sa_flags = SA_RESETHAND;
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+// What the user sees of a running fetch.
+class FetchDisplay {
+ public:
+  explicit FetchDisplay(const FetchArguments& arguments)
+      : url_(arguments.url), quiet_(arguments.quiet), bar_(!arguments.quiet) {}
+
+  StreamOptions stream_options() {
+    StreamOptions options;
+    options.name = url_;
+    options.cancel = &interrupted;
+    options.on_progress = [this](const StreamProgress& progress) { show(progress); };
+    options.on_retry = [this](const Error& error) {
+      if (!quiet_) std::fprintf(stderr, "pmesh fetch: %s; trying again\n", error.message.c_str());
+    };
+    return options;
+  }
+
+  double seconds() const { return seconds_since(start_); }
+  std::optional<double> first_picture_seconds() const { return first_picture_; }
+
+ private:
+  void show(const StreamProgress& progress) {
+    if (progress.faces > 0 && !first_picture_) first_picture_ = seconds();
+    bar_.show(progress.bytes_held, progress.bytes_wanted,
+              std::to_string(progress.bytes_held) + " bytes, " + std::to_string(progress.faces) +
+                  " faces");
+  }
+
+  std::string url_;
+  bool quiet_;
+  ProgressBar bar_;
+  Clock::time_point start_ = Clock::now();
+  std::optional<double> first_picture_;
+};
+
+void print_json(const FetchArguments& arguments, const FetchReport& report,
+                const FetchDisplay& display) {
+  nlohmann::ordered_json json = {{"url", arguments.url},
+                                 {"hash", to_hex(report.hash)},
+                                 {"faces", report.faces},
+                                 {"vertices", report.vertices},
+                                 {"bytes_fetched", report.bytes_fetched},
+                                 {"bytes_total", report.bytes_total},
+                                 {"reached", report.reached},
+                                 {"complete", report.complete},
+                                 {"seconds", display.seconds()},
+                                 {"first_picture_seconds", nullptr},
+                                 {"output", arguments.output}};
+  if (const auto first = display.first_picture_seconds()) json["first_picture_seconds"] = *first;
+  using Json = nlohmann::ordered_json;
+  std::puts(json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+void print_note(const FetchArguments& arguments, const FetchReport& report) {
+  if (!report.reached) {
+    std::fprintf(stderr, "pmesh fetch: %s: the wish is out of reach; %llu faces is the nearest\n",
+                 arguments.url.c_str(), static_cast<unsigned long long>(report.faces));
+  }
+  if (arguments.json || arguments.quiet) return;
+  std::printf("%s: %llu faces, %llu vertices, %llu of %llu bytes fetched\n",
+              arguments.output.c_str(), static_cast<unsigned long long>(report.faces),
+              static_cast<unsigned long long>(report.vertices),
+              static_cast<unsigned long long>(report.bytes_fetched),
+              static_cast<unsigned long long>(report.bytes_total));
+}
+
+Result<FetchReport> fetch(const FetchArguments& arguments, FetchDisplay& display) {
+  const Result<MeshUrl> url = parse_mesh_url(arguments.url);
+  if (!url) return url.error();
+  TransportOptions options;
+  options.cancel = &interrupted;
+  const std::unique_ptr<Transport> transport = make_transport(*url, options);
+  const FetchJob job{arguments.wish.wish(), arguments.output, arguments.force};
+  return fetch_to_file(*transport, job, display.stream_options());
+}
+
+int run(const FetchArguments& arguments) {
+  cancel_on_interrupt();
+  std::optional<FetchDisplay> display(std::in_place, arguments);
+  const Result<FetchReport> report = fetch(arguments, *display);
+  if (!report) {
+    display.reset();  // ends the progress bar's line
+    return cli::report("fetch", report.error());
+  }
+  if (arguments.json) print_json(arguments, *report, *display);
+  display.reset();
+  print_note(arguments, *report);
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_fetch(CLI::App& app, int& exit_status) {
+  CLI::App* verb = app.add_subcommand("fetch", "Fetch any level of detail of a mesh");
+  const auto arguments = std::make_shared<FetchArguments>();
+  verb->add_option("url", arguments->url,
+                   "http://HOST:PORT/ID, http://HOST/FILE.pmesh, tcp://HOST:PORT/ID or a path")
+      ->required();
+  verb->add_option("-o,--output", arguments->output,
+                   "What to write: .ply, .obj, or .pmesh, which a later fetch continues")
+      ->required();
+  arguments->wish.add_to(*verb);
+  verb->add_flag("--json", arguments->json, "Print one JSON object on stdout");
+  verb->add_flag("--force", arguments->force, "Start a .pmesh over, whatever file is there");
+  verb->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");
+  verb->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+}
+
+}  // namespace pmesh::cli

@@ -1,0 +1,43 @@
+// pmesh: one binary, a verb each for the steps from a mesh file to a level of detail.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "cli/exit_codes.h"
+#include "cli/verb.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"pmesh: precompute, serve and fetch any level of detail of a triangle mesh", "pmesh"};
+  app.set_version_flag("--version", PMESH_VERSION);
+  app.require_subcommand(1);
+  int exit_status = pmesh::cli::kExitOk;
+  pmesh::cli::add_precompute(app, exit_status);
+  pmesh::cli::add_info(app, exit_status);
+  pmesh::cli::add_verify(app, exit_status);
+  pmesh::cli::add_extract(app, exit_status);
+  pmesh::cli::add_serve(app, exit_status);
+  pmesh::cli::add_fetch(app, exit_status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? pmesh::cli::kExitOk : pmesh::cli::kExitUsage;
+  }
+  return exit_status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fputs("pmesh: out of memory\n", stderr);
+    return pmesh::cli::kExitResources;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "pmesh: %s\n", error.what());
+    return pmesh::cli::kExitRuntime;
+  }
+}

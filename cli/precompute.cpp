@@ -1,0 +1,200 @@
+// pmesh precompute: mesh file in, PM file out, and a report of all that was done to it.
+#include "core/precompute/precompute.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/exit_codes.h"
+#include "cli/verb.h"
+
+namespace pmesh::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  PrecomputeOptions precompute;
+  int quantization = 0;
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+// Seconds spent in each phase, and a line on the terminal that says where the work stands.
+class PhaseClock {
+ public:
+  explicit PhaseClock(bool show) : show_(show) {}
+
+  void update(PrecomputePhase phase, double fraction) {
+    if (phase != phase_) {
+      const auto now = Clock::now();
+      seconds_[static_cast<std::size_t>(phase_)] += since(entered_, now);
+      phase_ = phase;
+      entered_ = now;
+    }
+    if (!show_) return;
+    if (phase == PrecomputePhase::done) {
+      std::fprintf(stderr, "\r\033[K");
+    } else {
+      std::fprintf(stderr, "\r\033[K%s %3.0f%%", name(phase), 100 * fraction);
+    }
+  }
+
+  double seconds(PrecomputePhase phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
+  double total() const { return since(started_, Clock::now()); }
+
+  static const char* name(PrecomputePhase phase) {
+    constexpr std::array kNames = {"import", "clean", "decimate", "encode", "write", "done"};
+    return kNames[static_cast<std::size_t>(phase)];
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double since(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
+  }
+
+  bool show_;
+  PrecomputePhase phase_ = PrecomputePhase::import;
+  Clock::time_point started_ = Clock::now();
+  Clock::time_point entered_ = started_;
+  std::array<double, 6> seconds_{};
+};
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json to_json(const CleanReport& cleaned) {
+  return {{"degenerate", cleaned.degenerate},
+          {"duplicate", cleaned.duplicate},
+          {"welded", cleaned.welded},
+          {"unreferenced", cleaned.unreferenced},
+          {"opposite_pairs", cleaned.opposite_pairs},
+          {"nonmanifold_edges_cut", cleaned.nonmanifold_edges_cut},
+          {"winding_edges_cut", cleaned.winding_edges_cut},
+          {"nonmanifold_vertices_cut", cleaned.nonmanifold_vertices_cut},
+          {"vertices_added", cleaned.vertices_added}};
+}
+
+Json seconds_json(const PhaseClock& clock) {
+  Json seconds;
+  for (const PrecomputePhase phase :
+       {PrecomputePhase::import, PrecomputePhase::clean, PrecomputePhase::decimate,
+        PrecomputePhase::encode, PrecomputePhase::write}) {
+    seconds[PhaseClock::name(phase)] = clock.seconds(phase);
+  }
+  seconds["total"] = clock.total();
+  return seconds;
+}
+
+Json to_json(const Options& options, const PrecomputeReport& report, const PhaseClock& clock) {
+  return {{"input", options.precompute.input},
+          {"output", options.precompute.output},
+          {"input_faces", report.input_faces},
+          {"input_vertices", report.input_vertices},
+          {"polygons", report.polygons},
+          {"cleaned", to_json(report.cleaned)},
+          {"faces", report.faces},
+          {"vertices", report.vertices},
+          {"metric", options.precompute.metric},
+          {"base_faces", report.base_faces},
+          {"base_vertices", report.base_vertices},
+          {"base_bytes", report.base_bytes},
+          {"fold_over_relaxed_at",
+           report.fold_over_relaxed_at ? Json(*report.fold_over_relaxed_at) : Json(nullptr)},
+          {"quantization", report.lattice.bits},
+          {"step", report.lattice.step},
+          {"chunks", report.chunks},
+          {"file_bytes", report.file_bytes},
+          {"hash", report.hash},
+          {"seconds", seconds_json(clock)},
+          {"peak_memory_bytes", peak_memory_bytes()}};
+}
+
+void print_count(std::uint64_t count, const char* what) {
+  if (count > 0) std::printf("  %llu %s\n", static_cast<unsigned long long>(count), what);
+}
+
+void print_text(const Options& options, const PrecomputeReport& report, const PhaseClock& clock) {
+  const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+  const CleanReport& cleaned = report.cleaned;
+  std::printf("%s: %llu faces, %llu vertices\n", options.precompute.input.c_str(),
+              number(report.input_faces), number(report.input_vertices));
+  print_count(report.polygons, "polygons cut into fans of triangles");
+  print_count(cleaned.degenerate, "faces dropped that repeat a vertex");
+  print_count(cleaned.duplicate, "faces dropped as copies of another");
+  print_count(cleaned.unreferenced, "vertices dropped that no face uses");
+  print_count(cleaned.welded, "vertices welded");
+  print_count(cleaned.opposite_pairs, "pairs of opposite faces kept as two sheets");
+  print_count(cleaned.nonmanifold_edges_cut, "edges of more than two faces cut");
+  print_count(cleaned.winding_edges_cut, "edges cut whose faces disagree in orientation");
+  print_count(cleaned.nonmanifold_vertices_cut, "vertices with more than one fan cut");
+  if (cleaned.vertices_added > 0) {
+    std::printf("  %llu vertices added by cuts; cut borders may open at coarse levels of detail\n",
+                number(cleaned.vertices_added));
+  }
+  std::printf("full mesh: %llu faces, %llu vertices, %d bits (step %.4g)\n", number(report.faces),
+              number(report.vertices), report.lattice.bits, report.lattice.step);
+  std::printf("base mesh: %llu faces, %llu bytes\n", number(report.base_faces),
+              number(report.base_bytes));
+  if (report.fold_over_relaxed_at) {
+    std::printf("  the fold-over check was relaxed below %llu faces\n",
+                number(*report.fold_over_relaxed_at));
+  }
+  std::printf("%s: %llu bytes in %zu chunks, hash %s, %.2f s\n", options.precompute.output.c_str(),
+              number(report.file_bytes), report.chunks, report.hash.c_str(), clock.total());
+}
+
+int run_precompute(Options& options) {
+  if (options.quantization != 0) options.precompute.lattice_bits = options.quantization;
+  options.precompute.overwrite = options.force ? Overwrite::yes : Overwrite::no;
+  PhaseClock clock(!options.quiet && !options.json && isatty(STDERR_FILENO) != 0);
+  const Result<PrecomputeReport> result = precompute(
+      options.precompute,
+      [&](PrecomputePhase phase, double fraction) { clock.update(phase, fraction); });
+  if (!result) return report("precompute", result.error());
+  if (options.json) {
+    std::printf("%s\n", to_json(options, *result, clock).dump(2).c_str());
+  } else if (!options.quiet) {
+    print_text(options, *result, clock);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_precompute(CLI::App& app, int& exit_status) {
+  auto options = std::make_shared<Options>();
+  PrecomputeOptions& job = options->precompute;
+  job.threads = std::max(1u, std::thread::hardware_concurrency());
+  CLI::App* verb = app.add_subcommand("precompute", "Turn a mesh into a progressive PM file");
+  verb->add_option("IN", job.input, "Mesh file: .ply, .obj, .stl or .off")->required();
+  verb->add_option("-o,--output", job.output, "PM file to write")->required();
+  verb->add_option("--metric", job.metric, "Decimation metric")->capture_default_str();
+  verb->add_option("--quantization", options->quantization,
+                   "Bits a coordinate; default: a step of at most 1/25 of the median edge")
+      ->check(CLI::Range(kMinLatticeBits, kMaxLatticeBits));
+  verb->add_option("--base-faces", job.base_faces, "Faces of the base mesh, if topology allows")
+      ->check(CLI::Range(1u, 10'000'000u))
+      ->capture_default_str();
+  verb->add_option("--threads", job.threads, "Threads; the output does not depend on it")
+      ->check(CLI::Range(1u, 1024u))
+      ->capture_default_str();
+  verb->add_flag("--force", options->force, "Replace OUT if it exists");
+  verb->add_flag("--json", options->json, "Print one JSON object");
+  verb->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  verb->callback([options, &exit_status] { exit_status = run_precompute(*options); });
+}
+
+}  // namespace pmesh::cli

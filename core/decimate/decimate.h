@@ -1,0 +1,61 @@
+// Decimation: takes vertices out of a mesh by half-edge collapses, the least important first, and
+// logs them. Greedy by a heap, in the order that the metric's paper gives.
+//
+// Every state on the way is an oriented 2-manifold of the input's topology: the link condition is
+// always kept, border vertices move along their border only, a closed component ends as a
+// tetrahedron, an open one as a triangle. No collapse turns a face by more than 90 degrees, unless
+// the target cannot be had otherwise (see DecimationReport).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "core/decimate/collapse_log.h"
+#include "core/mesh/half_edge_mesh.h"
+#include "core/metrics/table.h"
+
+namespace pmesh {
+
+/// What a decimation is doing at a moment.
+enum class DecimationPhase : std::uint8_t { evaluate_all, heap, gather, cost, legality, collapse };
+inline constexpr int kDecimationPhases = 6;
+
+struct DecimateOptions {
+  AnyMetric metric;
+  /// Stops at the first mesh of at most this many faces.
+  std::uint32_t base_faces = 200;
+  /// For the first evaluation of all vertices; the rest is sequential. The result does not depend
+  /// on it. At least 1.
+  unsigned threads = 1;
+  /// By vertex: nonzero if the vertex must not be removed. Empty: none is locked.
+  std::span<const std::uint8_t> locked;
+  /// Called now and then, on the calling thread, with the collapses made and an estimate of all.
+  std::function<void(std::uint64_t done, std::uint64_t total_guess)> progress;
+  /// If given, always holds the current phase, for a profiler that samples it from another thread.
+  std::atomic<DecimationPhase>* phase = nullptr;
+};
+
+struct DecimationReport {
+  std::uint32_t faces = 0;  ///< Of the decimated mesh.
+  std::uint32_t vertices = 0;
+  /// The faces that were left when no collapse without fold-over remained, if collapses with
+  /// fold-over were then made.
+  std::optional<std::uint32_t> fold_over_relaxed_at_faces;
+};
+
+struct Decimation {
+  HalfEdgeMesh mesh;  ///< The base: live faces and vertices in the ids of the input.
+  CollapseLog log;
+  DecimationReport report;
+};
+
+/// Decimates `mesh`, whose vertex v lies at positions[v]. Needs about 44 bytes a vertex besides the
+/// mesh. The same log for the same input, whatever the threads; O(n log n).
+/// Precondition: positions.size() == mesh.vertex_slots(), all finite.
+Decimation decimate(HalfEdgeMesh mesh, std::span<const Vec3d> positions,
+                    const DecimateOptions& options = {});
+
+}  // namespace pmesh

@@ -1,0 +1,30 @@
+// Whether a half-edge collapse keeps the mesh a simplicial 2-manifold with the same topology, and
+// whether it turns a face over.
+#pragma once
+
+#include "core/decimate/metric.h"
+#include "core/mesh/half_edge_mesh.h"
+
+namespace pmesh {
+
+/// The border rule: a border vertex may only move along its border.
+inline bool may_move_to(const OneRing& ring, std::uint32_t head) {
+  return !ring.border || head == 0 || head + 1 == ring.neighbours;
+}
+
+/// The link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999) for the collapse of ring.centre
+/// into neighbour `head`, with a virtual vertex beyond every border: the two have no common
+/// neighbours but the apexes of their edge's faces, and the collapse would not leave fewer than a
+/// tetrahedron of a closed component, or a triangle of an open one.
+/// Reads only what gather_neighbours fills. Precondition: may_move_to(ring, head).
+bool link_condition_holds(const HalfEdgeMesh& mesh, const OneRing& ring, std::uint32_t head);
+
+/// Whether a face turns by more than 90 degrees. Faces without area do not count.
+inline bool folds_over(const MovedFaces& moved) {
+  for (std::uint32_t k = 0; k < moved.count; ++k) {
+    if (moved.cosine[k] < 0) return true;
+  }
+  return false;
+}
+
+}  // namespace pmesh

@@ -1,0 +1,222 @@
+// HalfEdgeMesh's edits: collapse, split and its undo, and the search for the site that inverts a
+// collapse. Names as in half_edge_mesh.h's picture.
+#include "core/mesh/half_edge_mesh.h"
+
+namespace pmesh {
+
+void HalfEdgeMesh::reserve(std::uint32_t vertices, std::uint32_t faces) {
+  origins_.reserve(std::size_t{3} * faces);
+  twins_.reserve(std::size_t{3} * faces);
+  outgoing_.reserve(vertices);
+}
+
+void HalfEdgeMesh::set_twins(HalfEdgeId a, HalfEdgeId b) {
+  if (a.valid()) twins_[a.value] = b;
+  if (b.valid()) twins_[b.value] = a;
+}
+
+void HalfEdgeMesh::kill_face(FaceId f) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    origins_[3 * f.value + k] = VertexId();
+    twins_[3 * f.value + k] = HalfEdgeId();
+  }
+  --live_faces_;
+}
+
+FaceId HalfEdgeMesh::append_face(VertexId a, VertexId b, VertexId c) {
+  const FaceId f(face_slots());
+  origins_.insert(origins_.end(), {a, b, c});
+  twins_.insert(twins_.end(), 3, HalfEdgeId());
+  ++live_faces_;
+  return f;
+}
+
+HalfEdgeId HalfEdgeMesh::find_edge(VertexId a, VertexId b) const {
+  // Both rings are walked in step, so that a hub of high valence costs no more than its neighbour.
+  // A border half-edge is the first of its origin's ring, so the targets are all the neighbours.
+  const HalfEdgeId first_a = outgoing(a), first_b = outgoing(b);
+  HalfEdgeId from_a = first_a, from_b = first_b;
+  while (true) {
+    if (target(from_a) == b) return from_a;
+    if (target(from_b) == a) return twin(from_b).valid() ? twin(from_b) : from_b;
+    from_a = rotate_ccw(from_a);
+    from_b = rotate_ccw(from_b);
+    if (!from_a.valid() || from_a == first_a || !from_b.valid() || from_b == first_b) return {};
+  }
+}
+
+HalfEdgeCollapse HalfEdgeMesh::collapse(VertexId removed, HalfEdgeId edge) {
+  const bool leaves_removed = origin(edge) == removed;
+  assert(leaves_removed || target(edge) == removed);
+  const HalfEdgeId to_kept = leaves_removed ? edge : twin(edge);
+  const HalfEdgeId to_removed = leaves_removed ? twin(edge) : edge;
+  assert(!is_border(removed) || !to_kept.valid() || !to_removed.valid());
+
+  HalfEdgeCollapse done{removed, leaves_removed ? target(edge) : origin(edge), {}, {}};
+  const HalfEdgeId first = outgoing(removed);
+  HalfEdgeId& anchor = outgoing_[done.kept.value];
+  HalfEdgeId h = first;
+  do {  // faces L and R too: they die below
+    origins_[h.value] = done.kept;
+    h = rotate_ccw(h);
+  } while (h.valid() && h != first);
+
+  if (to_kept.valid()) {  // L = (removed, kept, left)
+    const HalfEdgeId kept_to_left = next(to_kept), left_to_removed = prev(to_kept);
+    const HalfEdgeId outer = twin(kept_to_left), inner = twin(left_to_removed);
+    done.left = origin(left_to_removed);
+    set_twins(outer, inner);
+    if (outgoing(done.left) == left_to_removed) outgoing_[done.left.value] = outer;
+    if (anchor == kept_to_left || anchor == to_removed) anchor = inner;
+  }
+  if (to_removed.valid()) {  // R = (kept, removed, right)
+    const HalfEdgeId removed_to_right = next(to_removed), right_to_kept = prev(to_removed);
+    const HalfEdgeId inner = twin(removed_to_right), outer = twin(right_to_kept);
+    done.right = origin(right_to_kept);
+    set_twins(outer, inner);
+    if (outgoing(done.right) == right_to_kept) outgoing_[done.right.value] = inner;
+    // On a border, kept's fan now begins where removed's did.
+    if (!to_kept.valid()) anchor = first == removed_to_right ? outer : first;
+  }
+  if (to_kept.valid()) kill_face(face(to_kept));
+  if (to_removed.valid()) kill_face(face(to_removed));
+  outgoing_[removed.value] = HalfEdgeId();
+  --live_vertices_;
+  return done;
+}
+
+Status HalfEdgeMesh::check(const SplitSite& site) const {
+  const HalfEdgeId start = site.half_edge;
+  if (start.value >= origins_.size()) return bad_input("the split's half-edge does not exist");
+  if (live_faces_ > kNoIndex / 3 - 2) return bad_input("too many faces for 32-bit ids");
+  if (site.kind == SplitKind::interior) {
+    if (site.moved_faces == 0) return bad_input("an interior split moves no face");
+  } else {
+    if (!is_border(start)) return bad_input("a border split is not at a border");
+    if (site.moved_faces == 0) return {};
+  }
+  const bool clockwise = site.kind == SplitKind::border_last;
+  HalfEdgeId h = clockwise ? next(start) : start;
+  for (std::uint32_t moved = 1; moved < site.moved_faces; ++moved) {
+    h = clockwise ? rotate_cw(h) : rotate_ccw(h);
+    if (!h.valid() || h == start) return bad_input("the split moves more faces than there are");
+  }
+  if (site.kind == SplitKind::interior && rotate_ccw(h) == start) {
+    return bad_input("the split's cut neighbours are the same");
+  }
+  return {};
+}
+
+VertexId HalfEdgeMesh::split(const SplitSite& site) {
+  const HalfEdgeId start = site.half_edge;
+  const VertexId added(vertex_slots());
+  outgoing_.emplace_back();
+  ++live_vertices_;
+
+  // The half-edges around the moved fan, before it moves: its first face has `kept -> left`
+  // (inner_left), its last has `right -> kept` (inner_right); outer_* are their twins. A fan
+  // without faces has the border half-edge itself as its outer side.
+  HalfEdgeId inner_left, outer_left, inner_right, outer_right;
+  VertexId kept;
+  if (site.kind == SplitKind::border_last) {
+    kept = target(start);
+    outer_left = start;
+    HalfEdgeId h = next(start);
+    for (std::uint32_t moved = 0; moved < site.moved_faces; ++moved) {
+      inner_left = h;
+      outer_left = twin(h);
+      origins_[h.value] = added;
+      if (outer_left.valid()) h = next(outer_left);
+    }
+  } else {
+    kept = origin(start);
+    outer_right = start;
+    HalfEdgeId h = start;
+    if (site.kind == SplitKind::interior) {
+      inner_left = start;
+      outer_left = twin(start);
+    }
+    for (std::uint32_t moved = 0; moved < site.moved_faces; ++moved) {
+      inner_right = prev(h);
+      outer_right = twin(inner_right);
+      origins_[h.value] = added;
+      h = outer_right;
+    }
+  }
+  HalfEdgeId& anchor = outgoing_[kept.value];
+
+  HalfEdgeId added_to_kept, kept_to_added;
+  if (site.kind != SplitKind::border_first) {  // L = (added, kept, left)
+    const VertexId left = inner_left.valid() ? target(inner_left) : origin(outer_left);
+    added_to_kept = HalfEdgeId(3 * append_face(added, kept, left).value);
+    const HalfEdgeId kept_to_left = next(added_to_kept), left_to_added = prev(added_to_kept);
+    set_twins(kept_to_left, outer_left);
+    set_twins(left_to_added, inner_left);
+    if (!inner_left.valid()) outgoing_[left.value] = left_to_added;
+    if (origin(anchor) == added) anchor = kept_to_left;
+    outgoing_[added.value] = site.kind == SplitKind::interior ? inner_left : added_to_kept;
+  }
+  if (site.kind != SplitKind::border_last) {  // R = (added, right, kept)
+    const VertexId right = inner_right.valid() ? origin(inner_right) : target(outer_right);
+    const HalfEdgeId added_to_right(3 * append_face(added, right, kept).value);
+    const HalfEdgeId right_to_kept = next(added_to_right);
+    kept_to_added = prev(added_to_right);
+    set_twins(added_to_right, inner_right);
+    set_twins(right_to_kept, outer_right);
+    if (!outer_right.valid()) outgoing_[right.value] = right_to_kept;
+    if (site.kind == SplitKind::border_first) {
+      outgoing_[added.value] = site.moved_faces > 0 ? start : added_to_right;
+      outgoing_[kept.value] = kept_to_added;
+    }
+  }
+  if (site.kind == SplitKind::interior) set_twins(added_to_kept, kept_to_added);
+  return kept;
+}
+
+void HalfEdgeMesh::undo_split(const SplitSite& site) {
+  const std::uint32_t faces = face_slots();
+  const HalfEdgeId edge =
+      site.kind == SplitKind::border_first
+          ? HalfEdgeId(3 * (faces - 1) + 2)  // kept -> added, in R
+          : HalfEdgeId(3 * (faces - static_cast<std::uint32_t>(site.added_faces())));  // in L
+  collapse(VertexId(vertex_slots() - 1), edge);
+  outgoing_.pop_back();
+  origins_.resize(origins_.size() - 3 * static_cast<std::size_t>(site.added_faces()));
+  twins_.resize(origins_.size());
+}
+
+SplitSite HalfEdgeMesh::find_site(const HalfEdgeCollapse& collapse) const {
+  SplitSite site;
+  const auto count = [](std::uint32_t faces) {
+    assert(faces <= kMaxMovedFaces);
+    return static_cast<std::uint16_t>(faces);
+  };
+  if (collapse.left.valid() && collapse.right.valid()) {
+    site.half_edge = find_edge(collapse.kept, collapse.left);
+    assert(origin(site.half_edge) == collapse.kept);
+    std::uint32_t moved = 1;
+    for (HalfEdgeId h = site.half_edge; apex(h) != collapse.right; h = rotate_ccw(h)) ++moved;
+    site.moved_faces = count(moved);
+    return site;
+  }
+  HalfEdgeId h = outgoing(collapse.kept);
+  if (collapse.right.valid()) {
+    site.kind = SplitKind::border_first;
+    site.half_edge = h;
+    std::uint32_t moved = 0;
+    for (; h.valid() && target(h) != collapse.right; h = rotate_ccw(h)) ++moved;
+    site.moved_faces = count(moved);
+    return site;
+  }
+  // border_last: faces from kept -> left to the end of the fan; none if left ends the fan.
+  site.kind = SplitKind::border_last;
+  std::uint32_t moved = 0;
+  for (; h.valid(); h = rotate_ccw(h)) {
+    if (moved > 0 || target(h) == collapse.left) ++moved;
+    site.half_edge = prev(h);
+  }
+  site.moved_faces = count(moved);
+  return site;
+}
+
+}  // namespace pmesh

@@ -1,0 +1,169 @@
+// The connectivity of an oriented triangle 2-manifold with or without borders, and its two edits:
+// half-edge collapse and vertex split, exact inverses of each other (see split() and undo_split()).
+//
+// Three half-edges a face, stored together: half-edge 3f+k leaves corner k of face f, so next, prev
+// and face are arithmetic, and the corner array is at the same time an index buffer for a GPU.
+// 24 bytes a face and 4 a vertex. (Why not twin = id xor 1: docs/decisions/0002.)
+//
+// Geometry is stored elsewhere, indexed by vertex. Orientation: faces are counter-clockwise, and
+// "ccw" around a vertex means the same.
+//
+//                 left
+//                /    \            The edge (removed, kept) with its two faces: L, to the left
+//               /  L   \           of removed -> kept, and R, to its right. A collapse of removed
+//        removed ------ kept       into kept deletes L and R; removed's other faces, the moved
+//               \  R   /           fan, become kept's. On a border one of L and R is missing.
+//                \    /
+//                 right
+//
+// Invariants (validate() checks them all):
+//  - twin(twin(h)) == h, and origin(twin(h)) == target(h): neighbours agree in orientation;
+//  - a half-edge without a twin is a border half-edge;
+//  - outgoing(v) leaves v; if v lies on a border it is the border half-edge, the first of v's fan
+//    in ccw order, so that rotating ccw from it meets every face of v;
+//  - every vertex has exactly one fan of faces (no bow-ties), and no two faces have the same
+//    directed edge.
+//
+// Threads: const members may be called at the same time; edits need the mesh to themselves.
+#pragma once
+
+#include <cassert>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "core/mesh/indexed_mesh.h"
+
+namespace pmesh {
+
+/// A half-edge collapse in vertex ids; enough to find the vertex split that undoes it.
+struct HalfEdgeCollapse {
+  VertexId removed;
+  VertexId kept;
+  VertexId left;   ///< Apex of the deleted face left of removed -> kept; invalid if there is none.
+  VertexId right;  ///< Apex of the deleted face right of it; invalid if there is none.
+
+  int removed_faces() const { return int{left.valid()} + int{right.valid()}; }
+};
+
+enum class SplitKind : std::uint8_t {
+  interior,      ///< Adds L and R.
+  border_first,  ///< Adds R only: the new vertex takes the first faces of a border vertex's fan.
+  border_last,   ///< Adds L only: the new vertex takes the last faces of a border vertex's fan.
+};
+
+/// No collapse or split moves more faces than this, so that its work is bounded by a constant (a PM
+/// file stores the count in a byte). A vertex with a larger fan is not removed until its
+/// neighbours' collapses have made the fan smaller.
+inline constexpr std::uint32_t kMaxMovedFaces = 255;
+
+/// Where a vertex is split, in half-edge ids of the mesh just before the split.
+struct SplitSite {
+  /// interior: kept -> left, the first moved face's.
+  /// border_first: kept's first outgoing half-edge (a border half-edge leaving kept).
+  /// border_last: the last incoming half-edge of kept's fan (a border half-edge ending in kept).
+  HalfEdgeId half_edge;
+  /// Faces that the new vertex takes over, ccw (border_last: cw) from there. At least 1 for
+  /// interior; 0 on a border glues one new face (an "ear") to the border half-edge.
+  std::uint16_t moved_faces = 0;
+  SplitKind kind = SplitKind::interior;
+
+  int added_faces() const { return kind == SplitKind::interior ? 2 : 1; }
+  friend bool operator==(const SplitSite&, const SplitSite&) = default;
+};
+
+class HalfEdgeMesh {
+ public:
+  HalfEdgeMesh() = default;
+
+  /// The mesh of `triangles` over vertices 0..vertex_count-1; face f is triangles[f], half-edge
+  /// 3f+k leaves triangles[f][k]. Fails (bad_input, naming a face or vertex) if an index is out of
+  /// range or repeated in a face, if the faces are not an oriented 2-manifold as described above,
+  /// or if a vertex has no face. O(faces log(max valence)).
+  static Result<HalfEdgeMesh> build(std::span<const Triangle> triangles,
+                                    std::uint32_t vertex_count);
+
+  /// Checks every invariant. O(faces log faces). For tests, verify and debugging.
+  Status validate() const;
+
+  // Sizes. Ids run below the slot counts; a collapse leaves dead slots.
+  std::uint32_t vertex_slots() const { return static_cast<std::uint32_t>(outgoing_.size()); }
+  std::uint32_t face_slots() const { return static_cast<std::uint32_t>(twins_.size() / 3); }
+  std::uint32_t live_vertices() const { return live_vertices_; }
+  std::uint32_t live_faces() const { return live_faces_; }
+  bool is_live(VertexId v) const { return outgoing_[v.value].valid(); }
+  bool is_live(FaceId f) const { return origins_[3 * f.value].valid(); }
+
+  // Navigation. Arguments must be live.
+  static HalfEdgeId next(HalfEdgeId h) {
+    return HalfEdgeId(h.value % 3 == 2 ? h.value - 2 : h.value + 1);
+  }
+  static HalfEdgeId prev(HalfEdgeId h) {
+    return HalfEdgeId(h.value % 3 == 0 ? h.value + 2 : h.value - 1);
+  }
+  static FaceId face(HalfEdgeId h) { return FaceId(h.value / 3); }
+  VertexId origin(HalfEdgeId h) const { return origins_[h.value]; }
+  VertexId target(HalfEdgeId h) const { return origins_[next(h).value]; }
+  VertexId apex(HalfEdgeId h) const { return origins_[prev(h).value]; }
+  /// Invalid on a border.
+  HalfEdgeId twin(HalfEdgeId h) const { return twins_[h.value]; }
+  HalfEdgeId outgoing(VertexId v) const { return outgoing_[v.value]; }
+  /// The next outgoing half-edge of the same vertex, counter-clockwise; invalid past a border.
+  HalfEdgeId rotate_ccw(HalfEdgeId h) const { return twin(prev(h)); }
+  /// The same clockwise.
+  HalfEdgeId rotate_cw(HalfEdgeId h) const {
+    const HalfEdgeId t = twin(h);
+    return t.valid() ? next(t) : t;
+  }
+  bool is_border(HalfEdgeId h) const { return !twin(h).valid(); }
+  bool is_border(VertexId v) const { return is_border(outgoing(v)); }
+  /// The corners of face f are elements 3f, 3f+1 and 3f+2; dead faces hold invalid ids.
+  std::span<const VertexId> corners() const { return origins_; }
+
+  /// The half-edge between `a` and `b` that leaves `a`, or, if that one does not exist on a border,
+  /// the one that leaves `b`; invalid if they are not neighbours. O(smaller valence).
+  HalfEdgeId find_edge(VertexId a, VertexId b) const;
+
+  /// Collapses `edge` (either of its half-edges): its end `removed` merges into the other end.
+  /// Preconditions: the link condition holds (the ends' common neighbours are the apexes of the
+  /// edge's faces, and no vertex loses its last face; a tetrahedron becomes two faces back to
+  /// back); `removed` is no border vertex unless the edge is a border edge. Dead slots remain for
+  /// `removed` and the edge's faces.
+  HalfEdgeCollapse collapse(VertexId removed, HalfEdgeId edge);
+
+  /// Why `site` cannot be split here, or success. Never reads out of bounds, whatever the site.
+  /// O(moved faces).
+  Status check(const SplitSite& site) const;
+
+  /// Splits a vertex: appends one vertex and one or two faces, L = (new, kept, left) before
+  /// R = (new, right, kept). Precondition: check(site), and no dead slots. Returns kept.
+  VertexId split(const SplitSite& site);
+
+  /// Undoes the last split, which was at `site`: the faces, twins and live counts are again what
+  /// they were, bit for bit. (outgoing() of an interior vertex may differ: any is valid.)
+  void undo_split(const SplitSite& site);
+
+  /// The site whose split undoes `collapse`, in this mesh, the state just after it.
+  /// The moved fan must have at most kMaxMovedFaces faces. O(valence of kept) on a border, else
+  /// O(moved faces + the smaller valence of kept and left).
+  SplitSite find_site(const HalfEdgeCollapse& collapse) const;
+
+  void reserve(std::uint32_t vertices, std::uint32_t faces);
+
+ private:
+  Status match_twins(std::span<const Triangle> triangles);
+  Status anchor_vertices();  // each at its border half-edge, if it has one
+  void set_twins(HalfEdgeId a, HalfEdgeId b);
+  void kill_face(FaceId f);
+  FaceId append_face(VertexId a, VertexId b, VertexId c);
+
+  std::vector<VertexId> origins_;     // by half-edge
+  std::vector<HalfEdgeId> twins_;     // by half-edge
+  std::vector<HalfEdgeId> outgoing_;  // by vertex
+  std::uint32_t live_vertices_ = 0;
+  std::uint32_t live_faces_ = 0;
+};
+
+}  // namespace pmesh

@@ -1,0 +1,171 @@
+#include "core/pm/encoder.h"
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+
+#include "core/base/crc32c.h"
+#include "core/pm/base_codec.h"
+#include "core/pm/digest.h"
+#include "core/pm/format.h"
+#include "core/pm/split_encoder.h"
+#include "core/refine/refinable_mesh.h"
+
+namespace pmesh {
+namespace {
+
+constexpr std::size_t kFirstChunkBytes = 4 * 1024;
+constexpr std::size_t kLargestChunkBytes = 256 * 1024;
+constexpr std::size_t kLargestSplitBytes = 32;
+
+// The live part of a decimated mesh, and for each of its vertices the id it had there.
+struct CompactBase {
+  LatticeMesh mesh;
+  std::vector<VertexId> original;
+};
+
+CompactBase compact(const HalfEdgeMesh& decimated, std::span<const Vec3i> positions) {
+  CompactBase base;
+  std::vector<std::uint32_t> renamed(decimated.vertex_slots(), kNoIndex);
+  for (std::uint32_t v = 0; v < decimated.vertex_slots(); ++v) {
+    if (!decimated.is_live(VertexId(v))) continue;
+    renamed[v] = static_cast<std::uint32_t>(base.original.size());
+    base.original.push_back(VertexId(v));
+    base.mesh.positions.push_back(positions[v]);
+  }
+  const std::span<const VertexId> corners = decimated.corners();
+  for (std::uint32_t f = 0; f < decimated.face_slots(); ++f) {
+    if (!decimated.is_live(FaceId(f))) continue;
+    base.mesh.triangles.push_back({renamed[corners[3 * f].value], renamed[corners[3 * f + 1].value],
+                                   renamed[corners[3 * f + 2].value]});
+  }
+  return base;
+}
+
+// Replays the log backwards on the base and cuts the splits into chunks.
+class ChunkWriter {
+ public:
+  ChunkWriter(const EncodeInput& input, const FileHeader& header, const LatticeMesh& base,
+              std::vector<VertexId> file_ids)
+      : input_(input),
+        header_(header),
+        mesh_(std::move(*RefinableMesh::from_base(base))),
+        file_ids_(std::move(file_ids)) {
+    mesh_.reserve(static_cast<std::uint32_t>(header.vertices),
+                  static_cast<std::uint32_t>(header.faces));
+  }
+
+  /// Appends chunks to `body` and their rows to `rows`; false as soon as there are more than
+  /// `most_rows`.
+  bool write(std::size_t largest, std::size_t most_rows, std::vector<ChunkRow>& rows, Bytes& body) {
+    const auto& collapses = input_.log.collapses;
+    std::size_t target = kFirstChunkBytes;
+    for (auto next = collapses.rbegin(); next != collapses.rend();) {
+      if (rows.size() == most_rows) return false;
+      SplitEncoder chunk(header_);
+      while (next != collapses.rend() && chunk.byte_count() + kLargestSplitBytes <= target) {
+        put_split(*next++, chunk);
+      }
+      rows.push_back(finish(std::move(chunk), body));
+      target = std::min(target + target / 2, largest);
+    }
+    return true;
+  }
+
+ private:
+  VertexId file_id(VertexId original) const {
+    return original.valid() ? file_ids_[original.value] : original;
+  }
+
+  void put_split(const HalfEdgeCollapse& collapse, SplitEncoder& chunk) {
+    const HalfEdgeCollapse renamed{VertexId(mesh_.vertex_count()), file_id(collapse.kept),
+                                   file_id(collapse.left), file_id(collapse.right)};
+    const VertexSplit split{mesh_.connectivity().find_site(renamed),
+                            input_.positions[collapse.removed.value]};
+    chunk.put(split, mesh_);
+    [[maybe_unused]] const Status applied = mesh_.append(split);
+    assert(applied.ok());
+    file_ids_[collapse.removed.value] = renamed.removed;
+  }
+
+  ChunkRow finish(SplitEncoder chunk, Bytes& body) const {
+    const Bytes bytes = std::move(chunk).finish();
+    ChunkRow row;
+    row.bytes = static_cast<std::uint32_t>(bytes.size());
+    row.crc = crc32c(bytes);
+    row.digest = digest_section(bytes);
+    row.vertices = mesh_.vertex_count();
+    row.faces = mesh_.face_count();
+    body.insert(body.end(), bytes.begin(), bytes.end());
+    return row;
+  }
+
+  const EncodeInput& input_;
+  const FileHeader& header_;
+  RefinableMesh mesh_;
+  std::vector<VertexId> file_ids_;  // by original vertex, once it stands
+};
+
+FileHeader describe(const EncodeInput& input, const EncodedBase& base) {
+  FileHeader header;
+  header.lattice = input.lattice;
+  header.metric = input.metric;
+  header.parameters = input.parameters;
+  header.unit = input.unit;
+  header.base_vertices = base.decoded.positions.size();
+  header.base_faces = base.decoded.triangles.size();
+  header.base_bytes = base.bytes.size();
+  header.base_crc = crc32c(base.bytes);
+  header.base_digest = digest_section(base.bytes);
+  header.vertices = header.base_vertices + input.log.collapses.size();
+  header.faces = header.base_faces;
+  for (const HalfEdgeCollapse& collapse : input.log.collapses) {
+    header.faces += static_cast<std::uint64_t>(collapse.removed_faces());
+    header.has_borders |= collapse.removed_faces() == 1;
+  }
+  header.box_low = header.box_high = input.positions.front();
+  for (const Vec3i p : input.positions) {
+    Vec3i &low = header.box_low, &high = header.box_high;
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return header;
+}
+
+std::size_t most_rows(const FileIndex& index) {
+  FileIndex one_row = index;
+  one_row.chunks.resize(1);
+  const std::size_t header = prologue_size(index);
+  return (kMaxPrologueBytes - header) / (prologue_size(one_row) - header);
+}
+
+}  // namespace
+
+Result<Bytes> encode(const EncodeInput& input) {
+  const CompactBase compacted = compact(input.base, input.positions);
+  Result<EncodedBase> base = encode_base(compacted.mesh);
+  if (!base) return prefixed("base mesh", base.error());
+  std::vector<VertexId> file_ids(input.base.vertex_slots());
+  for (std::size_t v = 0; v < compacted.original.size(); ++v) {
+    file_ids[compacted.original[v].value] = VertexId(base->decoded_vertex[v]);
+  }
+
+  FileIndex index;
+  index.header = describe(input, *base);
+  const std::size_t rows_that_fit = most_rows(index);
+  Bytes body;
+  for (std::size_t largest = kLargestChunkBytes;; largest *= 2) {
+    body = base->bytes;
+    index.chunks.clear();
+    ChunkWriter writer(input, index.header, base->decoded, file_ids);
+    if (writer.write(largest, rows_that_fit, index.chunks, body)) break;
+  }
+
+  const Bytes unhashed = write_prologue(index);
+  index.header.content_hash = hash_prologue(unhashed);
+  Bytes file = write_prologue(index);
+  file.insert(file.end(), body.begin(), body.end());
+  return file;
+}
+
+}  // namespace pmesh

@@ -1,0 +1,71 @@
+#include "core/pm/pm_file.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/pm/base_codec.h"
+#include "core/pm/digest.h"
+#include "core/pm/stream_decoder.h"
+
+namespace pmesh {
+namespace {
+
+Result<FileIndex> parse_start(ByteView start, std::uint64_t file_bytes) {
+  Result<std::optional<FileIndex>> parsed = parse_prologue(start);
+  if (!parsed) return parsed.error();
+  if (!parsed->has_value()) return bad_input("the file ends inside header and index");
+  FileIndex& index = **parsed;
+  if (hash_prologue(start.first(index.prologue_bytes)) != index.header.content_hash) {
+    return bad_input("header and index: wrong content hash");
+  }
+  if (file_bytes < index.base_end()) {
+    return bad_input("the file ends inside the base mesh: " +
+                     std::to_string(index.base_end() - file_bytes) + " bytes are missing");
+  }
+  if (file_bytes > index.header.file_bytes) {
+    return bad_input("the file is " + std::to_string(file_bytes - index.header.file_bytes) +
+                     " bytes too long");
+  }
+  return std::move(index);
+}
+
+}  // namespace
+
+Result<PmFile> PmFile::open(const std::string& path) {
+  Result<RandomAccessFile> file = RandomAccessFile::open(path);
+  if (!file) return file.error();
+  Bytes start(std::min<std::uint64_t>(file->size(), kMaxPrologueBytes));
+  if (Status read = file->read(0, start); !read) return read.error();
+  Result<FileIndex> index = parse_start(start, file->size());
+  if (!index) return prefixed(path, index.error());
+  return PmFile(std::move(*file), std::move(*index));
+}
+
+std::size_t PmFile::whole_chunks() const {
+  const auto cut = std::partition_point(
+      index_.chunks.begin(), index_.chunks.end(),
+      [&](const ChunkRow& row) { return row.end() <= bytes_on_disk(); });
+  return static_cast<std::size_t>(cut - index_.chunks.begin());
+}
+
+Result<Bytes> PmFile::read(std::uint64_t begin, std::uint64_t end) const {
+  Bytes bytes(end - begin);
+  if (Status read = file_.read(begin, bytes); !read) return read.error();
+  return bytes;
+}
+
+Result<RefinableMesh> PmFile::decode(std::size_t chunk_count) const {
+  assert(chunk_count <= whole_chunks());
+  StreamDecoder decoder(decode_base);
+  std::uint64_t begin = 0;
+  for (std::size_t chunks = 0; chunks <= chunk_count; ++chunks) {
+    const std::uint64_t end = index_.prefix_bytes(chunks);
+    const Result<Bytes> section = read(begin, end);
+    if (!section) return section.error();
+    if (Status fed = decoder.feed(*section); !fed) return prefixed(file_.path(), fed.error());
+    begin = end;
+  }
+  return std::move(decoder.mesh());
+}
+
+}  // namespace pmesh

@@ -1,0 +1,104 @@
+#include "core/pm/stream_decoder.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/base/crc32c.h"
+#include "core/pm/split_decoder.h"
+
+namespace pmesh {
+
+StreamDecoder::StreamDecoder(BaseDecoder decode_base, const DecodeLimits& limits)
+    : decode_base_(decode_base), limits_(limits) {}
+
+Status StreamDecoder::feed(ByteView bytes) {
+  while (status_.ok() && !bytes.empty()) {
+    if (complete()) {
+      status_ = bad_input("bytes follow the last chunk");
+      break;
+    }
+    const std::uint64_t wanted = section_bytes();
+    if (pending_.empty() && bytes.size() >= wanted && has_index()) {  // a section without a copy
+      take_whole_section(bytes.first(wanted));
+      bytes = bytes.subspan(wanted);
+      continue;
+    }
+    const std::size_t taken = std::min<std::uint64_t>(wanted - pending_.size(), bytes.size());
+    pending_.insert(pending_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken));
+    bytes = bytes.subspan(taken);
+    if (!has_index()) {
+      take_prologue();
+    } else if (pending_.size() == wanted) {
+      take_whole_section(pending_);
+      pending_.clear();
+    }
+  }
+  return status_;
+}
+
+// The length of the section that the next byte belongs to; for the prologue, how far to look.
+std::uint64_t StreamDecoder::section_bytes() const {
+  if (!has_index()) return kMaxPrologueBytes;
+  if (!has_base()) return index_->header.base_bytes;
+  return index_->chunks[chunk_count_].bytes;
+}
+
+// Parses the prologue once enough of it is pending; what follows it is fed again.
+void StreamDecoder::take_prologue() {
+  Result<std::optional<FileIndex>> parsed = parse_prologue(pending_, limits_);
+  if (!parsed) {
+    status_ = parsed.error();
+  } else if (parsed->has_value()) {
+    index_ = std::move(**parsed);
+    usable_bytes_ = index_->prologue_bytes;
+    const Bytes fed = std::exchange(pending_, {});
+    status_ = feed(ByteView(fed).subspan(index_->prologue_bytes));
+  }
+}
+
+void StreamDecoder::take_whole_section(ByteView section) {
+  status_ = has_base() ? take_chunk(section) : take_base(section);
+  if (status_.ok()) usable_bytes_ += section.size();
+}
+
+Status StreamDecoder::take_base(ByteView section) {
+  const FileHeader& header = index_->header;
+  if (limits_.verify_checksums && crc32c(section) != header.base_crc) {
+    return bad_input("base mesh: wrong checksum");
+  }
+  Result<LatticeMesh> base = decode_base_(section, header);
+  if (!base) return prefixed("base mesh", base.error());
+  if (base->positions.size() != header.base_vertices ||
+      base->triangles.size() != header.base_faces) {
+    return bad_input("base mesh: its counts differ from the header's");
+  }
+  for (const Vec3i p : base->positions) {
+    if (((p.x | p.y | p.z) >> header.lattice.bits) != 0) {
+      return bad_input("base mesh: a vertex lies off the lattice");
+    }
+  }
+  Result<RefinableMesh> mesh = RefinableMesh::from_base(*base);
+  if (!mesh) return mesh.error();
+  mesh_ = std::move(*mesh);
+  return {};
+}
+
+Status StreamDecoder::take_chunk(ByteView section) {
+  const ChunkRow& row = index_->chunks[chunk_count_];
+  const std::string where = "chunk " + std::to_string(chunk_count_);
+  if (limits_.verify_checksums && crc32c(section) != row.crc) {
+    return bad_input(where + ": wrong checksum");
+  }
+  mesh_->set_finest();
+  const std::uint64_t splits = row.vertices - mesh_->vertex_count();
+  const Status decoded =
+      decode_chunk(section, static_cast<std::uint32_t>(splits), index_->header, *mesh_);
+  if (!decoded) return prefixed(where, decoded.error());
+  if (mesh_->face_count() != row.faces) {
+    return bad_input(where + ": its face count differs from the index");
+  }
+  ++chunk_count_;
+  return {};
+}
+
+}  // namespace pmesh

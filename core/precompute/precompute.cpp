@@ -1,0 +1,110 @@
+#include "core/precompute/precompute.h"
+
+#include <utility>
+
+#include "core/decimate/decimate.h"
+#include "core/io/import.h"
+#include "core/mesh/half_edge_mesh.h"
+#include "core/metrics/table.h"
+#include "core/pm/encoder.h"
+#include "core/pm/format.h"
+#include "core/precompute/quantise.h"
+
+namespace pmesh {
+namespace {
+
+// Fails now, not after the work, if the output could not be written.
+Status probe_output(const PrecomputeOptions& options) {
+  const Result<AtomicFile> probe = AtomicFile::create(options.output, options.overwrite);
+  return probe ? Status() : Status(probe.error());
+}
+
+Result<IndexedMesh> import_and_clean(const PrecomputeOptions& options,
+                                     const PrecomputeProgress& progress, PrecomputeReport& report) {
+  progress(PrecomputePhase::import, 0);
+  Result<ImportedMesh> imported = import_mesh(options.input);
+  if (!imported) return imported.error();
+  report.input_faces = imported->mesh.triangles.size();
+  report.input_vertices = imported->mesh.positions.size();
+  report.polygons = imported->polygons;
+
+  progress(PrecomputePhase::clean, 0);
+  CleanedMesh cleaned = clean(std::move(*imported));
+  if (cleaned.mesh.triangles.empty()) {
+    return bad_input(options.input + ": no face with three distinct vertices");
+  }
+  report.cleaned = cleaned.report;
+  report.faces = cleaned.mesh.triangles.size();
+  report.vertices = cleaned.mesh.positions.size();
+  return std::move(cleaned.mesh);
+}
+
+Result<Decimation> decimate_mesh(const IndexedMesh& mesh, const AnyMetric& metric,
+                                 const PrecomputeOptions& options,
+                                 const PrecomputeProgress& progress, PrecomputeReport& report) {
+  progress(PrecomputePhase::decimate, 0);
+  Result<HalfEdgeMesh> connectivity =
+      HalfEdgeMesh::build(mesh.triangles, static_cast<std::uint32_t>(mesh.positions.size()));
+  if (!connectivity) return prefixed("after cleaning", connectivity.error());
+  DecimateOptions decimation;
+  decimation.metric = metric;
+  decimation.base_faces = options.base_faces;
+  decimation.threads = options.threads;
+  decimation.progress = [&](std::uint64_t done, std::uint64_t total) {
+    progress(PrecomputePhase::decimate, static_cast<double>(done) / static_cast<double>(total));
+  };
+  Decimation result = decimate(std::move(*connectivity), mesh.positions, decimation);
+  report.base_faces = result.report.faces;
+  report.base_vertices = result.report.vertices;
+  report.fold_over_relaxed_at = result.report.fold_over_relaxed_at_faces;
+  return result;
+}
+
+// What the header says of the file just encoded.
+void report_file(const Bytes& file, PrecomputeReport& report) {
+  const auto index = parse_prologue(file);
+  report.chunks = (*index)->chunks.size();
+  report.base_bytes = (*index)->header.base_bytes;
+  report.file_bytes = file.size();
+  report.hash = to_hex((*index)->header.content_hash);
+}
+
+Status write_file(const PrecomputeOptions& options, const Bytes& bytes) {
+  Result<AtomicFile> file = AtomicFile::create(options.output, options.overwrite);
+  if (!file) return file.error();
+  if (Status written = file->write(bytes); !written) return written;
+  return file->commit();
+}
+
+}  // namespace
+
+Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
+                                    const PrecomputeProgress& progress) {
+  PrecomputeReport report;
+  const Result<AnyMetric> metric = make_metric(options.metric);
+  if (!metric) return metric.error();
+  if (Status probed = probe_output(options); !probed) return probed.error();
+  Result<IndexedMesh> mesh = import_and_clean(options, progress, report);
+  if (!mesh) return mesh.error();
+  const Result<Lattice> lattice = choose_lattice(*mesh, options.lattice_bits);
+  if (!lattice) return prefixed(options.input, lattice.error());
+  report.lattice = *lattice;
+  const std::vector<Vec3i> points = quantise(mesh->positions, *lattice);
+
+  const Result<Decimation> decimation = decimate_mesh(*mesh, *metric, options, progress, report);
+  if (!decimation) return decimation.error();
+  *mesh = {};
+
+  progress(PrecomputePhase::encode, 0);
+  const Result<Bytes> file = encode({decimation->mesh, points, decimation->log, *lattice,
+                                     options.metric, metric_parameters(*metric), ""});
+  if (!file) return prefixed(options.output, file.error());
+  report_file(*file, report);
+
+  progress(PrecomputePhase::write, 0);
+  if (Status written = write_file(options, *file); !written) return written.error();
+  progress(PrecomputePhase::done, 1);
+  return report;
+}
+
+}  // namespace pmesh

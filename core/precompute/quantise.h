@@ -1,0 +1,25 @@
+// From a cleaned mesh to its lattice, and the test that two lattice meshes are the same surface.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/mesh/indexed_mesh.h"
+#include "core/mesh/lattice.h"
+
+namespace pmesh {
+
+/// The lattice for `mesh`: of `bits` bits if given, else of default_lattice_bits() or as many bits
+/// below that as double precision can tell apart at these coordinates.
+/// Precondition: the mesh has a vertex.
+Result<Lattice> choose_lattice(const IndexedMesh& mesh, std::optional<int> bits);
+
+/// The lattice points nearest to `positions`.
+std::vector<Vec3i> quantise(const std::vector<Vec3d>& positions, const Lattice& lattice);
+
+/// Whether `a` and `b` have the same triangles: the same positions in the same orientation, each
+/// as often. Vertex and face numbering, and where a triangle starts, do not matter.
+bool same_triangles(const LatticeMesh& a, const LatticeMesh& b);
+
+}  // namespace pmesh

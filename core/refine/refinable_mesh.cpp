@@ -1,0 +1,71 @@
+#include "core/refine/refinable_mesh.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace pmesh {
+
+Result<RefinableMesh> RefinableMesh::from_base(const LatticeMesh& base) {
+  if (base.positions.size() >= kNoIndex) {
+    return Error{ErrorCode::out_of_resources, "more vertices than 32-bit ids can name"};
+  }
+  Result<HalfEdgeMesh> connectivity =
+      HalfEdgeMesh::build(base.triangles, static_cast<std::uint32_t>(base.positions.size()));
+  if (!connectivity) return prefixed("base mesh", connectivity.error());
+  RefinableMesh mesh;
+  mesh.connectivity_ = std::move(*connectivity);
+  mesh.positions_ = base.positions;
+  return mesh;
+}
+
+void RefinableMesh::reserve(std::uint32_t vertices, std::uint32_t faces) {
+  connectivity_.reserve(vertices, faces);
+  positions_.reserve(vertices);
+  sites_.reserve(vertices - base_vertices());
+}
+
+Status RefinableMesh::append(const VertexSplit& split) {
+  assert(is_finest());
+  if (Status status = connectivity_.check(split.site); !status) return status;
+  if (positions_.size() + 1 >= kNoIndex) {
+    return Error{ErrorCode::out_of_resources, "more vertices than 32-bit ids can name"};
+  }
+  connectivity_.split(split.site);
+  positions_.push_back(split.position);
+  sites_.push_back(split.site);
+  ++applied_;
+  return {};
+}
+
+void RefinableMesh::refine_once() { connectivity_.split(sites_[applied_++]); }
+
+void RefinableMesh::coarsen_once() { connectivity_.undo_split(sites_[--applied_]); }
+
+void RefinableMesh::set_splits(std::uint32_t count) {
+  assert(count <= known_splits());
+  while (applied_ > count) coarsen_once();
+  while (applied_ < count) refine_once();
+}
+
+void RefinableMesh::set_faces(std::uint64_t count) {
+  while (applied_ > 0 && face_count() > count) coarsen_once();
+  while (!is_finest() && face_count() + sites_[applied_].added_faces() <= count) refine_once();
+}
+
+void RefinableMesh::set_vertices(std::uint64_t count) {
+  const std::uint64_t splits = count > base_vertices() ? count - base_vertices() : 0;
+  set_splits(static_cast<std::uint32_t>(std::min<std::uint64_t>(splits, known_splits())));
+}
+
+LatticeMesh RefinableMesh::snapshot() const {
+  LatticeMesh copy;
+  copy.positions.assign(positions().begin(), positions().end());
+  copy.triangles.reserve(face_count());
+  const std::span<const VertexId> ids = corners();
+  for (std::size_t c = 0; c < ids.size(); c += 3) {
+    copy.triangles.push_back({ids[c].value, ids[c + 1].value, ids[c + 2].value});
+  }
+  return copy;
+}
+
+}  // namespace pmesh

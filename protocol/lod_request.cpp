@@ -1,0 +1,205 @@
+#include "protocol/lod_request.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace pmesh {
+namespace {
+
+Error usage(std::string message) { return {ErrorCode::usage, std::move(message)}; }
+
+template <class T>
+std::optional<T> parse_number(std::string_view text) {
+  T value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end) return {};
+  return value;
+}
+
+Result<LodRequest> parse_count(WishKind kind, std::string_view key, std::string_view value) {
+  const auto count = parse_number<std::uint64_t>(value);
+  if (!count) return usage("wish " + std::string(key) + ": expected a whole number");
+  return LodRequest{.kind = kind, .count = *count};
+}
+
+Result<LodRequest> parse_ratio(std::string_view value) {
+  const auto ratio = parse_number<double>(value);
+  if (!ratio || !(*ratio > 0 && *ratio <= 1)) {
+    return usage("wish ratio: expected a number above 0 and at most 1");
+  }
+  return LodRequest{.kind = WishKind::ratio, .ratio = *ratio};
+}
+
+Result<LodRequest> parse_chunks(std::string_view value) {
+  const std::size_t dash = value.find('-');
+  if (dash == std::string_view::npos) return usage("wish chunks: expected first-last");
+  const auto first = parse_number<std::uint64_t>(value.substr(0, dash));
+  const auto last = parse_number<std::uint64_t>(value.substr(dash + 1));
+  if (!first || !last) return usage("wish chunks: expected first-last");
+  if (*first > *last) return usage("wish chunks: the first is after the last");
+  return LodRequest{.kind = WishKind::chunks, .first_chunk = *first, .last_chunk = *last};
+}
+
+std::string shortest(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(std::begin(text), std::end(text), value);
+  return {text, end};
+}
+
+/// What a chunk adds. Every split adds a vertex, and two faces or, on a border, one.
+struct ChunkGrowth {
+  std::uint64_t vertices, faces, border_splits;
+};
+
+ChunkGrowth growth(const FileIndex& index, std::size_t chunk) {
+  const std::uint64_t vertices = index.vertices_after(chunk + 1) - index.vertices_after(chunk);
+  const std::uint64_t faces = index.faces_after(chunk + 1) - index.faces_after(chunk);
+  const std::uint64_t border = 2 * vertices > faces ? 2 * vertices - faces : 0;
+  return {vertices, faces, std::min(border, vertices)};
+}
+
+/// The LOD that ends with chunk `chunk_count` - 1.
+Resolution prefix(const FileIndex& index, std::size_t chunk_count) {
+  return {.end = index.prefix_bytes(chunk_count),
+          .chunk_count = chunk_count,
+          .faces = index.faces_after(chunk_count),
+          .vertices = index.vertices_after(chunk_count)};
+}
+
+/// The base mesh, for a wish that wants less than it.
+Resolution unreached(const FileIndex& index) {
+  Resolution base = prefix(index, 0);
+  base.reached = false;
+  return base;
+}
+
+/// The most chunks c, 0 to all, for which `fits(c)` holds; it must hold for 0, and for every
+/// fewer chunks than it holds for.
+template <class Predicate>
+std::size_t most_chunks(const FileIndex& index, Predicate fits) {
+  std::size_t low = 0, high = index.chunks.size();
+  while (low < high) {
+    const std::size_t middle = low + (high - low + 1) / 2;
+    if (fits(middle)) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low;
+}
+
+Resolution resolve_faces(std::uint64_t count, const FileIndex& index) {
+  if (count < index.header.base_faces) return unreached(index);
+  const std::size_t whole =
+      most_chunks(index, [&](std::size_t c) { return index.faces_after(c) <= count; });
+  Resolution lod = prefix(index, whole);
+  if (whole == index.chunks.size()) return lod;
+
+  const std::uint64_t spare = count - lod.faces;
+  const ChunkGrowth next = growth(index, whole);
+  const std::uint64_t border = std::min(spare, next.border_splits);
+  const std::uint64_t splits = border + (spare - border) / 2;
+  if (splits == 0) return lod;
+  lod.end = index.prefix_bytes(whole + 1);
+  lod.chunk_count = whole + 1;
+  lod.vertices += splits;
+  lod.faces += next.border_splits == 0 ? 2 * splits : spare;
+  return lod;
+}
+
+Resolution resolve_vertices(std::uint64_t count, const FileIndex& index) {
+  if (count < index.header.base_vertices) return unreached(index);
+  const std::size_t whole =
+      most_chunks(index, [&](std::size_t c) { return index.vertices_after(c) <= count; });
+  Resolution lod = prefix(index, whole);
+  if (whole == index.chunks.size() || lod.vertices == count) return lod;
+
+  const std::uint64_t splits = count - lod.vertices;
+  const ChunkGrowth next = growth(index, whole);
+  lod.end = index.prefix_bytes(whole + 1);
+  lod.chunk_count = whole + 1;
+  lod.vertices = count;
+  lod.faces += splits + std::min(splits, next.vertices - next.border_splits);
+  return lod;
+}
+
+Resolution resolve_bytes(std::uint64_t count, const FileIndex& index) {
+  if (count < index.base_end()) return unreached(index);
+  return prefix(index,
+                most_chunks(index, [&](std::size_t c) { return index.prefix_bytes(c) <= count; }));
+}
+
+Result<Resolution> resolve_chunks(const LodRequest& wish, const FileIndex& index) {
+  if (wish.last_chunk >= index.chunks.size()) {
+    return usage("wish chunks: the file has " + std::to_string(index.chunks.size()) + " chunks");
+  }
+  Resolution pieces = prefix(index, static_cast<std::size_t>(wish.last_chunk) + 1);
+  const auto first = static_cast<std::size_t>(wish.first_chunk);
+  pieces.begin = first == 0 ? 0 : index.chunks[first].offset;
+  return pieces;
+}
+
+}  // namespace
+
+Result<LodRequest> parse_wish(std::string_view query) {
+  if (query.empty()) return LodRequest{};
+  if (query.find('&') != std::string_view::npos) return usage("expected one wish, found several");
+  const std::size_t equals = query.find('=');
+  if (equals == std::string_view::npos) return usage("expected a wish as key=value");
+  const std::string_view key = query.substr(0, equals);
+  const std::string_view value = query.substr(equals + 1);
+  if (key == "faces") return parse_count(WishKind::faces, key, value);
+  if (key == "vertices") return parse_count(WishKind::vertices, key, value);
+  if (key == "ratio") return parse_ratio(value);
+  if (key == "bytes") return parse_count(WishKind::bytes, key, value);
+  if (key == "chunks") return parse_chunks(value);
+  return usage("unknown wish; expected faces, vertices, ratio, bytes or chunks");
+}
+
+std::string to_query(const LodRequest& wish) {
+  switch (wish.kind) {
+    case WishKind::everything:
+      return "";
+    case WishKind::faces:
+      return "faces=" + std::to_string(wish.count);
+    case WishKind::vertices:
+      return "vertices=" + std::to_string(wish.count);
+    case WishKind::ratio:
+      return "ratio=" + shortest(wish.ratio);
+    case WishKind::bytes:
+      return "bytes=" + std::to_string(wish.count);
+    case WishKind::chunks:
+      return "chunks=" + std::to_string(wish.first_chunk) + "-" + std::to_string(wish.last_chunk);
+  }
+  return "";
+}
+
+std::uint64_t faces_of_ratio(double ratio, const FileIndex& index) {
+  return static_cast<std::uint64_t>(std::floor(ratio * static_cast<double>(index.header.faces)));
+}
+
+Result<Resolution> resolve(const LodRequest& wish, const FileIndex& index) {
+  switch (wish.kind) {
+    case WishKind::everything:
+      break;
+    case WishKind::faces:
+      return resolve_faces(wish.count, index);
+    case WishKind::vertices:
+      return resolve_vertices(wish.count, index);
+    case WishKind::ratio:
+      return resolve_faces(faces_of_ratio(wish.ratio, index), index);
+    case WishKind::bytes:
+      return resolve_bytes(wish.count, index);
+    case WishKind::chunks:
+      return resolve_chunks(wish, index);
+  }
+  Resolution everything = prefix(index, index.chunks.size());
+  everything.end = index.header.file_bytes;
+  return everything;
+}
+
+}  // namespace pmesh

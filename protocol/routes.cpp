@@ -1,0 +1,137 @@
+#include "protocol/routes.h"
+
+#include <array>
+#include <charconv>
+#include <vector>
+
+#include "protocol/mesh_id.h"
+
+namespace pmesh {
+namespace {
+
+Error usage(std::string message) { return {ErrorCode::usage, std::move(message)}; }
+
+/// -1 unless `c` is a hex digit.
+int hex_value(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// Cuts "http://host" off an absolute target; an empty path is "/".
+std::string_view origin_form(std::string_view target) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (!target.starts_with(scheme)) continue;
+    const std::size_t path = target.find('/', scheme.size());
+    return path == std::string_view::npos ? std::string_view("/") : target.substr(path);
+  }
+  return target;
+}
+
+/// The decoded segments of "/a/b/c"; more than four are cut to five. Fails on a broken escape.
+Result<std::vector<std::string>> path_segments(std::string_view path) {
+  constexpr std::size_t kMostSegments = 5;
+  std::vector<std::string> segments;
+  while (!path.empty() && segments.size() < kMostSegments) {
+    path.remove_prefix(1);  // the '/'
+    const std::string_view segment = path.substr(0, path.find('/'));
+    auto decoded = percent_decoded(segment);
+    if (!decoded) return usage("the path has a broken percent escape");
+    segments.push_back(std::move(*decoded));
+    path.remove_prefix(segment.size());
+  }
+  return segments;
+}
+
+std::optional<ContentHash> file_hash(std::string_view name) {
+  if (!name.ends_with(kMeshFileSuffix)) return {};
+  return parse_hash(name.substr(0, name.size() - kMeshFileSuffix.size()));
+}
+
+std::optional<std::uint64_t> chunk_number(std::string_view digits) {
+  std::uint64_t number = 0;
+  const char* end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, number);
+  if (error != std::errc{} || stop != end) return {};
+  return number;
+}
+
+Result<Route> file_route(const std::string& id, const ContentHash& hash, std::string_view query) {
+  const auto decoded = percent_decoded(query);
+  if (!decoded) return usage("the query has a broken percent escape");
+  auto wish = parse_wish(*decoded);
+  if (!wish) return wish.error();
+  return Route(MeshFileRoute{id, hash, *wish});
+}
+
+Result<Route> mesh_route(const std::vector<std::string>& segments, std::string_view query) {
+  const std::string& id = segments.front();
+  if (segments.size() == 1) return Route(MeshInfoRoute{id});
+  if (segments.size() == 2) {
+    const auto hash = file_hash(segments[1]);
+    if (hash) return file_route(id, *hash, query);
+  }
+  if (segments.size() == 4 && segments[2] == "c") {
+    const auto hash = parse_hash(segments[1]);
+    const auto chunk = chunk_number(segments[3]);
+    if (hash && chunk) return Route(ChunkRoute{id, *hash, *chunk});
+  }
+  return Route(UnknownRoute{});
+}
+
+}  // namespace
+
+Result<Route> parse_target(std::string_view target) {
+  target = origin_form(target);
+  if (!target.starts_with('/')) return usage("the request target is not a path");
+  const std::size_t question = target.find('?');
+  const std::string_view path = target.substr(0, question);
+  const std::string_view query =
+      question == std::string_view::npos ? std::string_view() : target.substr(question + 1);
+
+  const auto segments = path_segments(path);
+  if (!segments) return segments.error();
+  const std::string& first = segments->front();
+  if (segments->size() == 1 && first == "catalog") return Route(CatalogRoute{});
+  if (segments->size() == 1 && first == "health") return Route(HealthRoute{});
+  if (!is_mesh_id(first)) return Route(UnknownRoute{});
+  return mesh_route(*segments, query);
+}
+
+std::string file_target(std::string_view id, const ContentHash& hash, const LodRequest& wish) {
+  std::string target = "/";
+  target.append(id).append("/").append(to_hex(hash)).append(kMeshFileSuffix);
+  const std::string query = to_query(wish);
+  if (!query.empty()) target.append("?").append(query);
+  return target;
+}
+
+std::optional<std::string> percent_decoded(std::string_view text) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      decoded.push_back(text[i]);
+      continue;
+    }
+    if (text.size() - i < 3) return {};
+    const int high = hex_value(text[i + 1]), low = hex_value(text[i + 2]);
+    if (high < 0 || low < 0) return {};
+    decoded.push_back(static_cast<char>(16 * high + low));
+    i += 2;
+  }
+  return decoded;
+}
+
+std::optional<ContentHash> parse_hash(std::string_view hex) {
+  ContentHash hash;
+  if (hex.size() != 2 * hash.size()) return {};
+  if (hex.find_first_not_of("0123456789abcdef") != std::string_view::npos) return {};
+  for (std::size_t i = 0; i < hash.size(); ++i) {
+    hash[i] = static_cast<std::uint8_t>(16 * hex_value(hex[2 * i]) + hex_value(hex[2 * i + 1]));
+  }
+  return hash;
+}
+
+}  // namespace pmesh

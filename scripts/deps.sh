@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that pmesh needs: deps.sh [build] [test] [demo] [fuzz] [run];
+# the first three by default; `run` is for a machine that gets a built pmesh. Silent when nothing is
+# missing.
+set -euo pipefail
+
+build=(cmake g++ ninja-build libboost1.81-dev libcli11-dev libdraco-dev libspdlog-dev libssl-dev
+  nlohmann-json3-dev)
+test=(clang-format clang-tidy curl jq libgtest-dev libmeshoptimizer-dev zstd)
+demo=(ca-certificates curl jq nodejs npm)
+fuzz=(clang libclang-rt-14-dev)
+run=(libdraco7 libspdlog1.10 libssl3)
+
+fail() {
+  echo "deps.sh: $*" >&2
+  exit 1
+}
+
+is_debian_12() {
+  [ -r /etc/os-release ] && (. /etc/os-release && [ "$ID" = debian ] && [ "$VERSION_ID" = 12 ])
+}
+
+# The packages asked for that are not installed. Node.js from another source brings its own npm,
+# which excludes Debian's package.
+missing_packages() {
+  local package installed
+  installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+  for package in "$@"; do
+    if [ "$package" = npm ] && command -v npm >/dev/null; then continue; fi
+    grep -qx "installed $package" <<<"$installed" || echo "$package"
+  done
+}
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    env DEBIAN_FRONTEND=noninteractive "$@"
+  elif command -v sudo >/dev/null; then
+    sudo env DEBIAN_FRONTEND=noninteractive "$@"
+  else
+    fail "missing: ${missing[*]}; run this script as root, or install sudo"
+  fi
+}
+
+[ $# -gt 0 ] || set -- build test demo
+wanted=()
+for group in "$@"; do
+  case $group in
+    build) wanted+=("${build[@]}") ;;
+    test) wanted+=("${test[@]}") ;;
+    demo) wanted+=("${demo[@]}") ;;
+    fuzz) wanted+=("${fuzz[@]}") ;;
+    run) wanted+=("${run[@]}") ;;
+    *) fail "unknown group '$group'; usage: deps.sh [build] [test] [demo] [fuzz] [run]" ;;
+  esac
+done
+
+is_debian_12 || fail "this is not Debian 12; install by hand what corresponds to: ${wanted[*]}"
+mapfile -t missing < <(missing_packages "${wanted[@]}")
+if [ ${#missing[@]} -gt 0 ]; then
+  echo "deps.sh: installing ${missing[*]}" >&2
+  as_root apt-get -qq update
+  as_root apt-get -qq -y --no-install-recommends install "${missing[@]}" >/dev/null
+fi

@@ -1,0 +1,45 @@
+#include "server/mesh_file.h"
+
+namespace pmesh {
+namespace {
+
+FileStamp stamp_from(const struct stat& status) {
+  return {.device = status.st_dev,
+          .inode = status.st_ino,
+          .bytes = status.st_size,
+          .modified_ns = status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec};
+}
+
+std::optional<FileStamp> stamp_of_descriptor(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return {};
+  return stamp_from(status);
+}
+
+}  // namespace
+
+std::optional<FileStamp> stamp_of(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
+  return stamp_from(status);
+}
+
+Result<MeshPtr> MeshFile::open(std::string id, const std::string& path) {
+  const auto stamp = stamp_of(path);
+  if (!stamp) return runtime_error(path + ": not a regular file");
+  Result<PmFile> file = PmFile::open(path);
+  if (!file) return file.error();
+  if (!file->complete()) {
+    return Error{ErrorCode::verification,
+                 path + ": incomplete: " +
+                     std::to_string(file->index().header.file_bytes - file->bytes_on_disk()) +
+                     " bytes are missing"};
+  }
+  auto mesh = std::make_shared<const MeshFile>(std::move(id), std::move(*file), *stamp);
+  if (!mesh->intact()) return runtime_error(path + ": changed while it was opened");
+  return mesh;
+}
+
+bool MeshFile::intact() const { return stamp_of_descriptor(descriptor()) == stamp_; }
+
+}  // namespace pmesh

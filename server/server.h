@@ -1,0 +1,53 @@
+// The server: serves the PM files of a directory over HTTP and the TCP protocol of
+// docs/protocol.md.
+//
+//   auto server = Server::open({.directory = "meshes"});
+//   if (!server) return report(server.error());
+//   (*server)->run();
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/base/result.h"
+#include "server/options.h"
+
+namespace pmesh {
+
+/// Threads: drain() and stop() may be called on any thread at any time, the rest as said.
+class Server {
+ public:
+  /// Opens the meshes and binds the addresses. Fails (usage) on a directory or address that makes
+  /// no sense, (runtime) on an address that cannot be bound. The process ignores SIGPIPE from now
+  /// on: sendfile(2) cannot be told not to raise it.
+  static Result<std::unique_ptr<Server>> open(const ServerOptions& options);
+  ~Server();
+
+  /// "ADDRESS:PORT" as bound; empty for a protocol that is not served.
+  const std::string& http_address() const { return http_address_; }
+  const std::string& tcp_address() const { return tcp_address_; }
+
+  /// From now on SIGTERM and SIGINT drain, and a second one stops at once. Before run().
+  void handle_signals();
+
+  /// Serves until drained or stopped. Once only; uses the calling thread and options.threads - 1
+  /// more.
+  void run();
+
+  /// Accepts no more connections, lets the transfers under way end, cuts those that have not after
+  /// options.drain_grace; then run() returns.
+  void drain();
+
+  /// Cuts everything; run() returns.
+  void stop();
+
+ private:
+  class Impl;
+  explicit Server(const ServerOptions& options);
+
+  std::unique_ptr<Impl> impl_;
+  std::string http_address_;
+  std::string tcp_address_;
+};
+
+}  // namespace pmesh

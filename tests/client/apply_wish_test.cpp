@@ -1,0 +1,105 @@
+#include "client/apply_wish.h"
+
+#include <gtest/gtest.h>
+
+#include "core/pm/base_codec.h"
+#include "core/pm/stream_decoder.h"
+#include "tests/client/sample.h"
+
+namespace pmesh {
+namespace {
+
+using test::sample_file;
+using test::sample_index;
+using test::wish;
+
+// The sample, decoded up to `bytes`.
+StreamDecoder decoded(std::uint64_t bytes = sample_file().size()) {
+  StreamDecoder decoder(decode_base);
+  EXPECT_TRUE(decoder.feed(ByteView(sample_file()).first(static_cast<std::size_t>(bytes))).ok());
+  return decoder;
+}
+
+AppliedWish apply(const char* query, StreamDecoder& decoder) {
+  return *apply_wish(wish(query), decoder.index(), decoder.mesh());
+}
+
+TEST(ApplyWish, GivesEverythingByDefault) {
+  StreamDecoder decoder = decoded();
+  const AppliedWish applied = apply("", decoder);
+  EXPECT_EQ(applied.faces, sample_index().header.faces);
+  EXPECT_EQ(applied.vertices, sample_index().header.vertices);
+  EXPECT_TRUE(applied.reached);
+}
+
+TEST(ApplyWish, GivesTheLargestLodWithAtMostThatManyFaces) {
+  StreamDecoder decoder = decoded();
+  const AppliedWish applied = apply("faces=1001", decoder);
+  EXPECT_LE(applied.faces, 1001u);
+  decoder.mesh().set_splits(decoder.mesh().applied_splits() + 1);
+  EXPECT_GT(decoder.mesh().face_count(), 1001u);
+}
+
+TEST(ApplyWish, GivesExactlyThatManyVertices) {
+  StreamDecoder decoder = decoded();
+  EXPECT_EQ(apply("vertices=777", decoder).vertices, 777u);
+}
+
+TEST(ApplyWish, TakesARatioOfTheFaces) {
+  StreamDecoder decoder = decoded();
+  const AppliedWish by_ratio = apply("ratio=0.25", decoder);
+  const std::string faces = "faces=" + std::to_string(sample_index().header.faces / 4);
+  EXPECT_EQ(by_ratio.faces, apply(faces.c_str(), decoder).faces);
+}
+
+TEST(ApplyWish, GivesWholeChunksForBytes) {
+  StreamDecoder decoder = decoded();
+  const std::string bytes = "bytes=" + std::to_string(sample_index().chunks[1].end() + 1);
+  EXPECT_EQ(apply(bytes.c_str(), decoder).faces, sample_index().chunks[1].faces);
+}
+
+TEST(ApplyWish, GivesTheBaseBelowTheBase) {
+  StreamDecoder decoder = decoded();
+  for (const char* query : {"faces=1", "vertices=1", "ratio=1e-9", "bytes=1", "faces=0"}) {
+    const AppliedWish applied = apply(query, decoder);
+    EXPECT_EQ(applied.faces, sample_index().header.base_faces) << query;
+    EXPECT_FALSE(applied.reached) << query;
+  }
+}
+
+TEST(ApplyWish, SaysIfThePrefixIsTooShortForTheWish) {
+  StreamDecoder decoder = decoded(sample_index().chunks[1].end());
+  const std::uint64_t known = sample_index().chunks[1].faces;
+  EXPECT_TRUE(apply(("faces=" + std::to_string(known)).c_str(), decoder).reached);
+  const AppliedWish beyond = apply(("faces=" + std::to_string(known + 2)).c_str(), decoder);
+  EXPECT_FALSE(beyond.reached);
+  EXPECT_EQ(beyond.faces, known);
+  EXPECT_FALSE(apply("", decoder).reached);
+}
+
+TEST(ApplyWish, DoesNotDependOnTheLodBefore) {
+  StreamDecoder decoder = decoded();
+  const std::uint32_t from_fine = apply("faces=500", decoder).faces;
+  (void)apply("faces=1", decoder);
+  EXPECT_EQ(apply("faces=500", decoder).faces, from_fine);
+}
+
+TEST(ApplyWish, NeverNeedsMoreThanTheBytesItResolvesTo) {
+  for (const char* query : {"faces=100", "faces=999", "vertices=640", "ratio=0.5", "bytes=20000"}) {
+    StreamDecoder whole = decoded();
+    StreamDecoder prefix = decoded(resolve(wish(query), sample_index())->end);
+    const AppliedWish expected = apply(query, whole);
+    const AppliedWish applied = apply(query, prefix);
+    EXPECT_EQ(applied.faces, expected.faces) << query;
+    EXPECT_EQ(applied.vertices, expected.vertices) << query;
+    EXPECT_EQ(applied.reached, expected.reached) << query;
+  }
+}
+
+TEST(ApplyWish, RefusesChunksThatTheFileDoesNotHave) {
+  StreamDecoder decoder = decoded();
+  EXPECT_FALSE(apply_wish(wish("chunks=0-9999"), decoder.index(), decoder.mesh()).ok());
+}
+
+}  // namespace
+}  // namespace pmesh

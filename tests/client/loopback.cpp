@@ -1,0 +1,184 @@
+#include "tests/client/loopback.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace pmesh::test {
+namespace {
+
+sockaddr_in loopback_address(std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  return address;
+}
+
+int connect_to(std::uint16_t port) {
+  const sockaddr_in address = loopback_address(port);
+  const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    std::abort();
+  }
+  return descriptor;
+}
+
+}  // namespace
+
+Peer::~Peer() { ::close(descriptor_); }
+
+Bytes Peer::receive() {
+  pollfd waiting{descriptor_, POLLIN, 0};
+  if (::poll(&waiting, 1, 2000) != 1) return {};
+  Bytes bytes(64 * 1024);
+  const ssize_t count = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
+  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  return bytes;
+}
+
+bool Peer::send(ByteView bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (count <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+LoopbackServer::LoopbackServer(std::function<void(Peer&)> serve) : serve_(std::move(serve)) {
+  listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address = loopback_address(0);
+  socklen_t size = sizeof address;
+  auto* const generic = reinterpret_cast<sockaddr*>(&address);
+  if (::bind(listener_, generic, size) != 0 || ::listen(listener_, 64) != 0 ||
+      ::getsockname(listener_, generic, &size) != 0) {
+    std::abort();
+  }
+  port_ = ntohs(address.sin_port);
+  thread_ = std::thread([this] { run(); });
+}
+
+LoopbackServer::~LoopbackServer() {
+  stopping_ = true;
+  ::shutdown(listener_, SHUT_RDWR);
+  thread_.join();
+  ::close(listener_);
+}
+
+void LoopbackServer::run() {
+  while (!stopping_) {
+    const int accepted = ::accept(listener_, nullptr, nullptr);
+    if (accepted < 0) continue;
+    ++connections_;
+    Peer peer(accepted);
+    serve_(peer);
+  }
+}
+
+CuttingProxy::CuttingProxy(std::uint16_t server_port, std::function<std::size_t()> cut_after)
+    : server_port_(server_port),
+      cut_after_(std::move(cut_after)),
+      server_([this](Peer& client) { serve(client); }) {}
+
+void CuttingProxy::serve(Peer& client) {
+  Peer server(connect_to(server_port_));
+  std::size_t allowed = cut_after_();
+  pollfd ends[] = {{client.descriptor(), POLLIN, 0}, {server.descriptor(), POLLIN, 0}};
+  while (::poll(ends, 2, 2000) > 0) {
+    if (ends[0].revents != 0) {
+      const Bytes request = client.receive();
+      if (request.empty() || !server.send(request)) return;
+    }
+    if (ends[1].revents != 0) {
+      const Bytes answer = server.receive();
+      const std::size_t count = std::min(allowed, answer.size());
+      if (count == 0 || !client.send(ByteView(answer).first(count))) return;
+      allowed -= count;
+    }
+  }
+}
+
+HttpHost::HttpHost(Bytes file, HttpBehaviour behaviour)
+    : file_(std::move(file)),
+      behaviour_(std::move(behaviour)),
+      server_([this](Peer& peer) { serve(peer); }) {}
+
+std::string HttpHost::url() const {
+  return "http://127.0.0.1:" + std::to_string(server_.port()) + "/mesh.pmesh";
+}
+
+void HttpHost::serve(Peer& peer) {
+  std::string request;
+  for (Bytes bytes = peer.receive(); !bytes.empty(); bytes = peer.receive()) {
+    request.append(bytes.begin(), bytes.end());
+    if (request.find("\r\n\r\n") == std::string::npos) continue;
+    if (!answer(peer, std::exchange(request, {})) || !behaviour_.keeps_alive) return;
+  }
+}
+
+// False to close the connection.
+bool HttpHost::answer(Peer& peer, const std::string& request) {
+  const std::string response =
+      behaviour_.raw_answer.empty() ? response_to(request) : behaviour_.raw_answer;
+  if (behaviour_.stalls > 0) {
+    --behaviour_.stalls;
+    peer.send(as_bytes(response).first(response.size() / 2));
+    return !peer.receive().empty();  // until the client has had enough
+  }
+  if (behaviour_.cut_after) {
+    const std::size_t allowed = behaviour_.cut_after();
+    if (allowed < response.size()) {
+      peer.send(as_bytes(response).first(allowed));
+      return false;
+    }
+  }
+  return peer.send(as_bytes(response)) && behaviour_.raw_answer.empty();
+}
+
+std::string HttpHost::response_to(const std::string& request) {
+  unsigned long long first = 0;
+  unsigned long long last = file_.size() - 1;
+  const std::size_t header = request.find("Range: ");
+  const bool has_range = header != std::string::npos;
+  ranges_.push_back(has_range ? request.substr(header + 7, request.find('\r', header) - header - 7)
+                              : "");
+  if (!request.starts_with("GET /mesh.pmesh ")) {
+    return "HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n";
+  }
+  if (behaviour_.failures > 0) {
+    --behaviour_.failures;
+    return "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\n\r\n";
+  }
+  std::string head = "HTTP/1.1 200 OK\r\n";
+  if (has_range && !behaviour_.ignores_ranges) {
+    std::sscanf(ranges_.back().c_str(), "bytes=%llu-%llu", &first, &last);
+    const std::string total = std::to_string(file_.size());
+    if (first >= file_.size()) {
+      return "HTTP/1.1 416 Range Not Satisfiable\r\nContent-Range: bytes */" + total +
+             "\r\nContent-Length: 0\r\n\r\n";
+    }
+    last = std::min<unsigned long long>(last, file_.size() - 1);
+    head = "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes " + std::to_string(first) + "-" +
+           std::to_string(last) + "/" + total + "\r\n";
+  }
+  head += behaviour_.extra_header;
+  std::string body(file_.begin() + static_cast<long>(first),
+                   file_.begin() + static_cast<long>(last) + 1);
+  if (!behaviour_.chunked) {
+    return head + "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+  }
+  char size[20];
+  std::snprintf(size, sizeof size, "%zx\r\n", body.size());
+  return head + "Transfer-Encoding: chunked\r\n\r\n" + size + body + "\r\n0\r\n\r\n";
+}
+
+}  // namespace pmesh::test

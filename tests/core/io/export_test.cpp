@@ -1,0 +1,126 @@
+#include "core/io/export.h"
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/files/read_file.h"
+#include "tests/core/files/temporary_folder.h"
+#include "tests/core/io/import_checks.h"
+
+namespace pmesh {
+namespace {
+
+const Lattice kUnit{{0, 0, 0}, 0.5, 10};
+// A step of a tenth of a millimetre, 5,000 km from the origin.
+const Lattice kFarAway{{5'000'000.1, -4e6, 0.3}, 1e-4, 20};
+
+const LatticeMesh kMesh{{{0, 0, 0}, {1023, 2, 0}, {5, 1000, 7}, {1, 2, 3}}, {{0, 1, 2}, {3, 2, 1}}};
+
+std::string as_text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+
+TEST(FitsSinglePrecision, ComparesTheStepWithTheLargestCoordinate) {
+  EXPECT_TRUE(fits_single_precision(kUnit));
+  EXPECT_FALSE(fits_single_precision(kFarAway));
+  EXPECT_FALSE(fits_single_precision({{1e39, 0, 0}, 1, 10}));
+  EXPECT_TRUE(fits_single_precision({{0, 0, 0}, 1, 22}));
+  EXPECT_FALSE(fits_single_precision({{0, 0, 0}, 1, 23}));
+  EXPECT_FALSE(fits_single_precision({{0, 0, 0}, 1e-45, 10}));
+}
+
+TEST(FitsSinglePrecision, KeepsEveryPositionWithinAnEighthOfAStep) {
+  for (const double offset : {0.0, 1.0, -1000.0, 4095.0, 1e5, 1e6, 1e7}) {
+    const Lattice lattice{{offset, 0, 0}, 1.0 / 64, 12};
+    double worst = 0;
+    for (int i = 0; i < 4096; ++i) {
+      const double x = lattice.position({i, 0, 0}).x;
+      worst = std::max(worst, std::abs(static_cast<double>(static_cast<float>(x)) - x));
+    }
+    if (fits_single_precision(lattice)) {
+      EXPECT_LE(worst, lattice.step / 8) << offset;
+    }
+  }
+}
+
+TEST(Export, ImportGivesThePositionsAndTrianglesBack) {
+  for (const MeshFormat format : {MeshFormat::ply, MeshFormat::obj}) {
+    const ImportedMesh back = parsed(format, as_text(format_mesh(format, kMesh, kFarAway)));
+    EXPECT_EQ(back.mesh.triangles, kMesh.triangles);
+    ASSERT_EQ(back.mesh.positions.size(), kMesh.positions.size());
+    for (std::size_t i = 0; i < kMesh.positions.size(); ++i) {
+      EXPECT_EQ(back.mesh.positions[i], kFarAway.position(kMesh.positions[i]));
+    }
+  }
+}
+
+TEST(Export, SinglePrecisionGivesTheSameFloatsInBothFormats) {
+  const Lattice lattice{{0.1, 0.2, 0.3}, 0.01, 10};
+  ASSERT_TRUE(fits_single_precision(lattice));
+  const ImportedMesh ply =
+      parsed(MeshFormat::ply, as_text(format_mesh(MeshFormat::ply, kMesh, lattice)));
+  const ImportedMesh obj =
+      parsed(MeshFormat::obj, as_text(format_mesh(MeshFormat::obj, kMesh, lattice)));
+  for (std::size_t i = 0; i < kMesh.positions.size(); ++i) {
+    const Vec3d a = ply.mesh.positions[i];
+    const Vec3d b = obj.mesh.positions[i];
+    EXPECT_EQ(static_cast<float>(b.x), static_cast<float>(a.x));
+    EXPECT_EQ(a.x, static_cast<double>(static_cast<float>(lattice.position(kMesh.positions[i]).x)));
+  }
+}
+
+TEST(Export, PlyIsPinned) {
+  const std::string ply = as_text(format_mesh(MeshFormat::ply, {{{1, 2, 0}}, {{0, 0, 0}}}, kUnit));
+  EXPECT_EQ(ply,
+            "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+            "property float y\nproperty float z\nelement face 1\n"
+            "property list uchar int vertex_indices\nend_header\n" +
+                bytes_of(0.5f) + bytes_of(1.0f) + bytes_of(0.0f) + '\3' + std::string(12, '\0'));
+}
+
+TEST(Export, ObjIsPinned) {
+  EXPECT_EQ(as_text(format_mesh(MeshFormat::obj, kMesh, kUnit)),
+            "v 0 0 0\nv 511.5 1 0\nv 2.5 500 3.5\nv 0.5 1 1.5\nf 1 2 3\nf 4 3 2\n");
+}
+
+TEST(Export, WritesTheFileThatTheExtensionNames) {
+  const TemporaryFolder folder;
+  for (const char* name : {"out.ply", "out.OBJ"}) {
+    const std::string path = folder.file(name);
+    ASSERT_TRUE(export_mesh(path, kMesh, kUnit).ok());
+    const Result<ImportedMesh> back = import_mesh(path);
+    ASSERT_TRUE(back.ok());
+    EXPECT_EQ(back->mesh.triangles, kMesh.triangles);
+  }
+}
+
+TEST(Export, RefusesOtherFormats) {
+  const Status written = export_mesh("out.stl", kMesh, kUnit);
+  ASSERT_FALSE(written.ok());
+  EXPECT_EQ(written.error().code, ErrorCode::usage);
+  EXPECT_EQ(written.error().message, "out.stl: meshes are written as .ply or .obj");
+}
+
+TEST(Import, ErrorsBeginWithTheFilesName) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("bad.obj");
+  put_contents(path, "v 1 2\n");
+  EXPECT_EQ(import_mesh(path).error().message, path + ": line 1: expected 3 numbers, found 2");
+  EXPECT_EQ(import_mesh("mesh.glb").error().code, ErrorCode::usage);
+  EXPECT_EQ(import_mesh("absent.ply").error().message,
+            "absent.ply: cannot open: No such file or directory");
+}
+
+TEST(Import, KnowsFormatsByExtension) {
+  EXPECT_EQ(mesh_format_of("a/b.ply"), MeshFormat::ply);
+  EXPECT_EQ(mesh_format_of("A.OBJ"), MeshFormat::obj);
+  EXPECT_EQ(mesh_format_of("x.y.Stl"), MeshFormat::stl);
+  EXPECT_EQ(mesh_format_of(".off"), MeshFormat::off);
+  for (const char* path : {"", "ply", "a.glb", "a.ply.gz", "off"}) {
+    EXPECT_EQ(mesh_format_of(path), std::nullopt) << path;
+  }
+}
+
+}  // namespace
+}  // namespace pmesh

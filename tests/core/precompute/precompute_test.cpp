@@ -1,0 +1,154 @@
+#include "core/precompute/precompute.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "core/files/read_file.h"
+#include "core/pm/verify.h"
+#include "core/precompute/quantise.h"
+#include "tests/fixtures/real_meshes.h"
+#include "tests/fixtures/shapes.h"
+#include "tests/fixtures/temporary_directory.h"
+
+namespace pmesh {
+namespace {
+
+const PrecomputeProgress kSilent = [](PrecomputePhase, double) {};
+
+std::string obj_text(const IndexedMesh& mesh) {
+  std::string text;
+  char line[128];
+  for (const Vec3d& p : mesh.positions) {
+    std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", p.x, p.y, p.z);
+    text += line;
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    std::snprintf(line, sizeof line, "f %u %u %u\n", a + 1, b + 1, c + 1);
+    text += line;
+  }
+  return text;
+}
+
+class Precompute : public ::testing::Test {
+ protected:
+  PrecomputeOptions options_for(const IndexedMesh& mesh) {
+    PrecomputeOptions options;
+    options.input = directory_.write("in.obj", as_bytes(obj_text(mesh)));
+    options.output = directory_ / "out.pmesh";
+    options.overwrite = Overwrite::yes;
+    return options;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Precompute, TheFileHasExactlyTheInputsQuantisedTriangles) {
+  for (const shapes::Shape& shape : shapes::manifolds()) {
+    const PrecomputeOptions options = options_for(shape.mesh);
+    const auto report = precompute(options, kSilent);
+    ASSERT_TRUE(report.ok()) << shape.name << ": " << report.error().message;
+    const auto verified = verify_file(options.output);
+    ASSERT_TRUE(verified.ok()) << verified.error().message;
+    const LatticeMesh expected{quantise(shape.mesh.positions, verified->index.header.lattice),
+                               shape.mesh.triangles};
+    EXPECT_TRUE(same_triangles(verified->full, expected)) << shape.name;
+  }
+}
+
+TEST_F(Precompute, TakesEveryNonManifoldShape) {
+  for (const shapes::Shape& shape : shapes::non_manifolds()) {
+    const PrecomputeOptions options = options_for(shape.mesh);
+    const auto report = precompute(options, kSilent);
+    ASSERT_TRUE(report.ok()) << shape.name << ": " << report.error().message;
+    EXPECT_EQ(report->faces, shape.mesh.triangles.size() - report->cleaned.degenerate -
+                                 report->cleaned.duplicate);
+    EXPECT_TRUE(verify_file(options.output).ok()) << shape.name;
+  }
+}
+
+TEST_F(Precompute, GivesTheSameBytesForAnyNumberOfThreads) {
+  PrecomputeOptions options = options_for(shapes::bumped(shapes::genus(20), 0.3));
+  std::vector<Bytes> files;
+  for (const unsigned threads : {1u, 2u, 5u}) {
+    options.threads = threads;
+    ASSERT_TRUE(precompute(options, kSilent).ok());
+    files.push_back(*read_file(options.output));
+  }
+  EXPECT_EQ(files[0], files[1]);
+  EXPECT_EQ(files[0], files[2]);
+}
+
+TEST_F(Precompute, GoesThroughItsPhasesInOrder) {
+  std::vector<PrecomputePhase> phases;
+  const auto report =
+      precompute(options_for(shapes::icosphere(3)), [&](PrecomputePhase phase, double) {
+        if (phases.empty() || phases.back() != phase) phases.push_back(phase);
+      });
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(phases, (std::vector{PrecomputePhase::import, PrecomputePhase::clean,
+                                 PrecomputePhase::decimate, PrecomputePhase::encode,
+                                 PrecomputePhase::write, PrecomputePhase::done}));
+}
+
+TEST_F(Precompute, KeepsAnExistingFileUnlessToldOtherwise) {
+  PrecomputeOptions options = options_for(shapes::icosphere(2));
+  options.overwrite = Overwrite::no;
+  directory_.write("out.pmesh", as_bytes("mine"));
+  const auto report = precompute(options, kSilent);
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(read_file(options.output)->size(), 4u);
+}
+
+TEST_F(Precompute, LeavesNothingBehindOnBadInput) {
+  PrecomputeOptions options = options_for(shapes::icosphere(2));
+  options.input = directory_.write("bad.obj", as_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"));
+  const auto report = precompute(options, kSilent);
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().code, ErrorCode::bad_input);
+  EXPECT_EQ(report.error().message.rfind(options.input + ": line 4: ", 0), 0u)
+      << report.error().message;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_ / "")) {
+    EXPECT_EQ(entry.path().extension(), ".obj") << entry.path();
+  }
+}
+
+TEST_F(Precompute, RefusesAMeshWithoutAnyFace) {
+  PrecomputeOptions options = options_for(shapes::icosphere(1));
+  options.input = directory_.write("flat.obj", as_bytes("v 0 0 0\nv 1 0 0\nf 1 2 1\n"));
+  const auto report = precompute(options, kSilent);
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().message, options.input + ": no face with three distinct vertices");
+}
+
+TEST_F(Precompute, RefusesAMetricItDoesNotKnow) {
+  PrecomputeOptions options = options_for(shapes::icosphere(1));
+  options.metric = "beauty";
+  const auto report = precompute(options, kSilent);
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().code, ErrorCode::usage);
+}
+
+// The bunny in UTM-like coordinates keeps every face, and every position to within a lattice step.
+TEST_F(Precompute, TheBunnyMovedByFiveMillionMetresLosesNothing) {
+  const std::string path = real_mesh("bunny.obj");
+  if (path.empty()) GTEST_SKIP() << "PMESH_TEST_MESHES has no bunny.obj";
+  IndexedMesh bunny = import_mesh(path)->mesh;
+  PrecomputeOptions options = options_for(shapes::moved(bunny, {5e6, 5e6, 5e6}));
+  const auto moved = precompute(options, kSilent);
+  ASSERT_TRUE(moved.ok()) << moved.error().message;
+  EXPECT_EQ(moved->faces, 69'451u);
+  EXPECT_EQ(moved->vertices, 34'834u);
+  EXPECT_EQ(moved->base_faces <= 200, true);
+  const auto verified = verify_file(options.output);
+  ASSERT_TRUE(verified.ok());
+  const IndexedMesh shifted = import_mesh(options.input)->mesh;
+  const LatticeMesh expected{quantise(shifted.positions, verified->index.header.lattice),
+                             shifted.triangles};
+  EXPECT_TRUE(same_triangles(verified->full, expected));
+  EXPECT_LT(verified->index.header.lattice.step, 5e-5);
+}
+
+}  // namespace
+}  // namespace pmesh

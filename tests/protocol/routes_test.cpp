@@ -1,0 +1,93 @@
+#include "protocol/routes.h"
+
+#include <gtest/gtest.h>
+
+namespace pmesh {
+namespace {
+
+constexpr char kHash[] = "00112233445566778899aabbccddeeff";
+
+const ContentHash kHashBytes = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
+                                0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
+
+Route route(const std::string& target) { return parse_target(target).value(); }
+
+std::string hashed(const std::string& before, const std::string& after) {
+  return before + kHash + after;
+}
+
+TEST(Routes, KnowsTheFixedNames) {
+  EXPECT_EQ(route("/catalog"), Route(CatalogRoute{}));
+  EXPECT_EQ(route("/health?probe=1"), Route(HealthRoute{}));
+}
+
+TEST(Routes, KnowsAMesh) {
+  EXPECT_EQ(route("/scans~bunny"), Route(MeshInfoRoute{"scans~bunny"}));
+  EXPECT_EQ(route("/bunny?x"), Route(MeshInfoRoute{"bunny"}));
+}
+
+TEST(Routes, KnowsAFileWithAndWithoutAWish) {
+  EXPECT_EQ(route(hashed("/bunny/", ".pmesh")), Route(MeshFileRoute{"bunny", kHashBytes, {}}));
+  const LodRequest wish{.kind = WishKind::faces, .count = 5};
+  EXPECT_EQ(route(hashed("/bunny/", ".pmesh?faces=5")),
+            Route(MeshFileRoute{"bunny", kHashBytes, wish}));
+}
+
+TEST(Routes, KnowsAChunk) {
+  EXPECT_EQ(route(hashed("/bunny/", "/c/12")), Route(ChunkRoute{"bunny", kHashBytes, 12}));
+}
+
+TEST(Routes, DecodesPercentEscapesAfterCuttingThePath) {
+  EXPECT_EQ(route("/b%75nny"), Route(MeshInfoRoute{"bunny"}));
+  EXPECT_EQ(route("/scans%7Ebunny"), Route(MeshInfoRoute{"scans~bunny"}));
+  EXPECT_EQ(route("/a%2Fb"), Route(UnknownRoute{}));
+  EXPECT_EQ(route("/%2e%2e"), Route(UnknownRoute{}));
+  EXPECT_EQ(route("/a%00b"), Route(UnknownRoute{}));
+}
+
+TEST(Routes, TakesTheAbsoluteForm) {
+  EXPECT_EQ(route("http://host:8080/catalog"), Route(CatalogRoute{}));
+  EXPECT_EQ(route("http://host"), Route(UnknownRoute{}));
+}
+
+TEST(Routes, DoesNotKnowOtherPaths) {
+  for (const char* target : {"/", "//", "//catalog", "/catalog/", "/./catalog", "/../etc/passwd",
+                             "/bunny/", "/bunny/c/1", "/a/b/c/d/e/f/g", "/metrics", "/bunny//"}) {
+    EXPECT_EQ(route(target), Route(UnknownRoute{})) << target;
+  }
+}
+
+TEST(Routes, DoesNotKnowAHashThatIsNotOne) {
+  EXPECT_EQ(route("/bunny/0011.pmesh"), Route(UnknownRoute{}));
+  EXPECT_EQ(route("/bunny/00112233445566778899AABBCCDDEEFF.pmesh"), Route(UnknownRoute{}));
+  EXPECT_EQ(route(hashed("/bunny/", ".ply")), Route(UnknownRoute{}));
+  EXPECT_EQ(route(hashed("/bunny/", "/c/x")), Route(UnknownRoute{}));
+  EXPECT_EQ(route(hashed("/bunny/", "/c/99999999999999999999")), Route(UnknownRoute{}));
+}
+
+TEST(Routes, RejectsBrokenEscapes) {
+  for (const char* target : {"/%", "/%4", "/%4g", "/bunny%", "/a/b/%zz"}) {
+    EXPECT_FALSE(parse_target(target).ok()) << target;
+  }
+}
+
+TEST(Routes, RejectsBadWishes) {
+  EXPECT_FALSE(parse_target(hashed("/bunny/", ".pmesh?faces=x")).ok());
+  EXPECT_FALSE(parse_target(hashed("/bunny/", ".pmesh?faces=1&bytes=2")).ok());
+  EXPECT_FALSE(parse_target(hashed("/bunny/", ".pmesh?faces=%")).ok());
+}
+
+TEST(Routes, RejectsOtherFormsOfTarget) {
+  for (const char* target : {"", "*", "host:80", "catalog", "ftp://host/catalog"}) {
+    EXPECT_FALSE(parse_target(target).ok()) << target;
+  }
+}
+
+TEST(Routes, WritesTheTargetItReads) {
+  const LodRequest wish{.kind = WishKind::ratio, .ratio = 0.25};
+  EXPECT_EQ(file_target("bunny", kHashBytes, wish), hashed("/bunny/", ".pmesh?ratio=0.25"));
+  EXPECT_EQ(file_target("bunny", kHashBytes), hashed("/bunny/", ".pmesh"));
+}
+
+}  // namespace
+}  // namespace pmesh

@@ -1,0 +1,243 @@
+#include "server/http_answer.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/fixtures/temporary_directory.h"
+#include "tests/server/sample_file.h"
+
+namespace pmesh {
+namespace {
+
+using nlohmann::json;
+using testing::make_sample;
+using testing::SampleFile;
+
+class HttpAnswerTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    directory_.write("bunny.pmesh", bunny_.bytes);
+    store_ = MeshStore::open(directory_ / "", std::chrono::milliseconds(0)).value();
+  }
+
+  HttpAnswer get(const std::string& target, HttpRequest request = {}) {
+    target_ = target;
+    request.target = target_;
+    if (request.method.empty()) request.method = "GET";
+    return answer_http(request, *store_);
+  }
+
+  std::string file(const std::string& query = "") const {
+    return "/bunny/" + bunny_.hash() + ".pmesh" + query;
+  }
+  std::string etag(const std::string& suffix = "") const {
+    return std::string("\"").append(bunny_.hash()).append(suffix).append("\"");
+  }
+  std::uint64_t chunk_end(std::size_t chunk) const { return bunny_.index.chunks[chunk].end(); }
+
+  const SampleFile bunny_ = make_sample();
+  const std::uint64_t size_ = bunny_.bytes.size();
+  TemporaryDirectory directory_;
+  std::unique_ptr<MeshStore> store_;
+  std::string target_;
+};
+
+TEST_F(HttpAnswerTest, CatalogueListsTheMeshes) {
+  const HttpAnswer answer = get("/catalog");
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.fields.find("Content-Type"), "application/json");
+  EXPECT_EQ(answer.fields.find("Cache-Control"), "no-cache");
+  EXPECT_EQ(json::parse(answer.text)[0]["hash"], bunny_.hash());
+}
+
+TEST_F(HttpAnswerTest, HealthIsNeverStored) {
+  const HttpAnswer answer = get("/health");
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.fields.find("Cache-Control"), "no-store");
+}
+
+TEST_F(HttpAnswerTest, MeshInfoIsRevalidated) {
+  const HttpAnswer answer = get("/bunny");
+  EXPECT_EQ(json::parse(answer.text)["url"], file());
+  EXPECT_EQ(answer.fields.find("Cache-Control"), "no-cache");
+  const std::string tag(answer.fields.find("ETag"));
+  EXPECT_EQ(get("/bunny", {.if_none_match = tag}).status, 304);
+  EXPECT_EQ(get("/bunny", {.if_none_match = "\"other\""}).status, 200);
+}
+
+TEST_F(HttpAnswerTest, FileIsWholeAndForEver) {
+  const HttpAnswer answer = get(file());
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.span, (ByteSpan{0, size_}));
+  EXPECT_EQ(answer.fields.find("ETag"), etag());
+  EXPECT_EQ(answer.fields.find("Accept-Ranges"), "bytes");
+  EXPECT_EQ(answer.fields.find("Content-Location"), "");
+  EXPECT_NE(answer.fields.find("Cache-Control").find("immutable"), std::string::npos);
+  EXPECT_NE(answer.fields.find("Cache-Control").find("no-transform"), std::string::npos);
+}
+
+TEST_F(HttpAnswerTest, UnknownNamesAndHashesAreNotFound) {
+  const std::string other(32, '0');
+  for (const std::string& target :
+       {std::string("/"), std::string("/nobody"), "/bunny/" + other + ".pmesh",
+        "/nobody/" + bunny_.hash() + ".pmesh", "/bunny/" + other + "/c/0",
+        "/bunny/" + bunny_.hash() + "/c/3", std::string("/../bunny"), std::string("/bunny/")}) {
+    EXPECT_EQ(get(target).status, 404) << target;
+  }
+}
+
+TEST_F(HttpAnswerTest, RangeGivesPart) {
+  const HttpAnswer answer = get(file(), {.range = "bytes=10-19"});
+  EXPECT_EQ(answer.status, 206);
+  EXPECT_EQ(answer.span, (ByteSpan{10, 20}));
+  EXPECT_EQ(answer.fields.find("Content-Range"), "bytes 10-19/" + std::to_string(size_));
+}
+
+TEST_F(HttpAnswerTest, RangeBeyondTheEndIsNotSatisfiable) {
+  const std::string range = "bytes=" + std::to_string(size_) + "-";
+  const HttpAnswer answer = get(file(), {.range = range});
+  EXPECT_EQ(answer.status, 416);
+  EXPECT_EQ(answer.mesh, nullptr);
+  EXPECT_EQ(answer.fields.find("Content-Range"), "bytes */" + std::to_string(size_));
+}
+
+TEST_F(HttpAnswerTest, SeveralRangesGiveTheWhole) {
+  EXPECT_EQ(get(file(), {.range = "bytes=0-1,4-5"}).status, 200);
+}
+
+TEST_F(HttpAnswerTest, HeadIgnoresRangesAndHasNoBody) {
+  const HttpAnswer answer = get(file(), {.method = "HEAD", .range = "bytes=0-1"});
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_TRUE(answer.head_only);
+  EXPECT_EQ(answer.body_bytes(), size_);
+}
+
+TEST_F(HttpAnswerTest, IfRangeNeedsTheSameStrongTag) {
+  const std::string same = etag(), weak = "W/" + etag();
+  EXPECT_EQ(get(file(), {.range = "bytes=0-1", .if_range = same}).status, 206);
+  EXPECT_EQ(get(file(), {.range = "bytes=0-1", .if_range = weak}).status, 200);
+  EXPECT_EQ(get(file(), {.range = "bytes=0-1", .if_range = "\"other\""}).status, 200);
+  EXPECT_EQ(get(file(), {.range = "bytes=0-1", .if_range = "Sun, 06 Nov 1994 08:49:37 GMT"}).status,
+            200);
+}
+
+TEST_F(HttpAnswerTest, IfNoneMatchTakesListsWeakTagsAndStars) {
+  const std::string list = "\"a\", W/" + etag() + " , \"b\"";
+  for (const std::string& tags : {list, std::string("*"), etag()}) {
+    const HttpAnswer answer = get(file(), {.range = "bytes=0-1", .if_none_match = tags});
+    EXPECT_EQ(answer.status, 304) << tags;
+    EXPECT_FALSE(answer.may_have_body());
+    EXPECT_EQ(answer.fields.find("ETag"), etag());
+  }
+}
+
+TEST_F(HttpAnswerTest, WishGivesTheWholeChunkPrefix) {
+  const HttpAnswer answer = get(file("?faces=40"));
+  const std::string length = std::to_string(chunk_end(1));
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.span, (ByteSpan{0, chunk_end(1)}));
+  EXPECT_EQ(answer.fields.find("ETag"), etag("-" + length));
+  EXPECT_EQ(answer.fields.find("Content-Location"), file("?chunks=0-1"));
+  EXPECT_EQ(answer.fields.find("PMesh-Faces"), "40");
+  EXPECT_EQ(answer.fields.find("PMesh-Vertices"), "22");
+  EXPECT_EQ(answer.fields.find("PMesh-Chunks"), "2");
+  EXPECT_EQ(answer.fields.find("PMesh-Reached"), "1");
+}
+
+TEST_F(HttpAnswerTest, ContentLocationIsTheSameAnswer) {
+  for (const char* query : {"?faces=40", "?vertices=21", "?ratio=0.5", "?bytes=100000", "?faces=1",
+                            "?chunks=1-2", "?chunks=0-1"}) {
+    const HttpAnswer wished = get(file(query));
+    const HttpAnswer located = get(std::string(wished.fields.find("Content-Location")));
+    EXPECT_EQ(located.span, wished.span) << query;
+    EXPECT_EQ(located.fields.find("ETag"), wished.fields.find("ETag")) << query;
+  }
+}
+
+TEST_F(HttpAnswerTest, WishBelowTheBaseGivesTheBase) {
+  const HttpAnswer answer = get(file("?faces=3"));
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.span, (ByteSpan{0, bunny_.index.base_end()}));
+  EXPECT_EQ(answer.fields.find("PMesh-Reached"), "0");
+  EXPECT_EQ(answer.fields.find("PMesh-Chunks"), "0");
+}
+
+TEST_F(HttpAnswerTest, RangeWorksWithinAWish) {
+  const HttpAnswer answer = get(file("?chunks=1-2"), {.range = "bytes=5-"});
+  EXPECT_EQ(answer.status, 206);
+  EXPECT_EQ(answer.span, (ByteSpan{chunk_end(0) + 5, chunk_end(2)}));
+  EXPECT_EQ(answer.fields.find("Content-Range"), "bytes 5-599/600");
+}
+
+TEST_F(HttpAnswerTest, BadWishesAreBadRequests) {
+  for (const char* query : {"?faces=x", "?faces=1&bytes=2", "?ratio=2", "?chunks=0-3", "?x=1"}) {
+    EXPECT_EQ(get(file(query)).status, 400) << query;
+  }
+}
+
+TEST_F(HttpAnswerTest, ChunkIsAPlainAnswer) {
+  const HttpAnswer answer = get("/bunny/" + bunny_.hash() + "/c/1", {.range = "bytes=0-1"});
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.span, (ByteSpan{chunk_end(0), chunk_end(1)}));
+  EXPECT_EQ(answer.fields.find("Accept-Ranges"), "none");
+}
+
+TEST_F(HttpAnswerTest, OtherMethodsAreNotAllowed) {
+  for (const char* method : {"POST", "PUT", "DELETE", "TRACE", "CONNECT", "get", "BREW"}) {
+    const HttpAnswer answer = get("/catalog", {.method = method});
+    EXPECT_EQ(answer.status, 405) << method;
+    EXPECT_EQ(answer.fields.find("Allow"), "GET, HEAD, OPTIONS");
+  }
+}
+
+TEST_F(HttpAnswerTest, MalformedTargetsAreBadRequests) {
+  EXPECT_EQ(get("/%zz").status, 400);
+  EXPECT_EQ(get("catalog").status, 400);
+}
+
+TEST_F(HttpAnswerTest, LongTargetsAreRefused) {
+  EXPECT_EQ(get("/" + std::string(kMaxTargetBytes, 'a')).status, 414);
+}
+
+TEST_F(HttpAnswerTest, EveryAnswerMayBeReadByOtherOrigins) {
+  for (const std::string& target : {file(), std::string("/catalog"), std::string("/nobody"),
+                                    std::string("/%"), std::string("/health")}) {
+    const HttpAnswer answer = get(target);
+    EXPECT_EQ(answer.fields.find("Access-Control-Allow-Origin"), "*") << target;
+    EXPECT_NE(answer.fields.find("Access-Control-Expose-Headers").find("Content-Range"),
+              std::string::npos);
+  }
+}
+
+TEST_F(HttpAnswerTest, PreflightAllowsRanges) {
+  const HttpAnswer answer = get(file(), {.method = "OPTIONS"});
+  EXPECT_EQ(answer.status, 204);
+  EXPECT_NE(answer.fields.find("Access-Control-Allow-Headers").find("Range"), std::string::npos);
+}
+
+TEST_F(HttpAnswerTest, ReplacedFileHasANewTag) {
+  const std::string before(get("/bunny").fields.find("ETag"));
+  const SampleFile other = make_sample({100, 200, 400}, 2);
+  directory_.write("incoming", other.bytes);
+  std::filesystem::rename(directory_ / "incoming", directory_ / "bunny.pmesh");
+  EXPECT_EQ(get("/bunny", {.if_none_match = before}).status, 200);
+  EXPECT_EQ(get(file()).status, 404);
+  EXPECT_EQ(get("/bunny/" + other.hash() + ".pmesh").status, 200);
+}
+
+TEST_F(HttpAnswerTest, HeadTextIsTheWholeHead) {
+  HttpAnswer answer;
+  answer.status = 206;
+  answer.fields.add("ETag", "\"x\"");
+  answer.text = "abc";
+  EXPECT_EQ(head_text(answer, "today", true),
+            "HTTP/1.1 206 Partial Content\r\nDate: today\r\nETag: \"x\"\r\nContent-Length: 3\r\n"
+            "Connection: keep-alive\r\n\r\n");
+  answer.status = 304;
+  EXPECT_EQ(head_text(answer, "today", false).find("Content-Length"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pmesh
