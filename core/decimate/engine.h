@@ -66,7 +66,8 @@ class Engine {
   };
 
   // The queue is empty above the target: only fold-overs are left. Nothing else can have become
-  // legal unnoticed, because what a collapse frees lies in the ring of the vertex it removes.
+  // legal unnoticed, because a link condition only comes to hold if the common neighbour in its
+  // way, or a vertex between, is removed: then the candidate's ends are neighbours of that vertex.
   void run_relaxed() {
     const std::uint32_t faces = mesh_.live_faces();
     may_fold_over_ = true;
@@ -220,6 +221,7 @@ class Engine {
   static std::uint32_t index_of(const OneRing& ring, VertexId v) {
     std::uint32_t i = 0;
     while (ring.ids[i] != v) ++i;
+    assert(i < ring.neighbours);
     return i;
   }
 

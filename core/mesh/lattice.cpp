@@ -66,7 +66,8 @@ Result<Lattice> make_lattice(const std::vector<Vec3d>& positions, int bits) {
   if (!std::isfinite(side)) return bad_input("the bounding box is not finite");
   Lattice lattice{box.low, side / (std::ldexp(1.0, bits) - 1), static_cast<std::uint8_t>(bits)};
   if (side == 0) lattice.step = 1;
-  const double resolution = box.largest_coordinate() * std::numeric_limits<double>::epsilon();
+  const double largest = box.largest_coordinate();
+  const double resolution = largest - std::nextafter(largest, 0);
   if (side > 0 &&
       (lattice.step < resolution || lattice.step < std::numeric_limits<double>::min())) {
     return bad_input("quantisation to " + std::to_string(bits) +

@@ -69,13 +69,6 @@ void report_file(const Bytes& file, PrecomputeReport& report) {
   report.hash = to_hex((*index)->header.content_hash);
 }
 
-Status write_file(const PrecomputeOptions& options, const Bytes& bytes) {
-  Result<AtomicFile> file = AtomicFile::create(options.output, options.overwrite);
-  if (!file) return file.error();
-  if (Status written = file->write(bytes); !written) return written;
-  return file->commit();
-}
-
 }  // namespace
 
 Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
@@ -102,7 +95,7 @@ Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
   report_file(*file, report);
 
   progress(PrecomputePhase::write, 0);
-  if (Status written = write_file(options, *file); !written) return written.error();
+  if (Status written = write_file(options.output, *file, options.overwrite); !written) return written.error();
   progress(PrecomputePhase::done, 1);
   return report;
 }

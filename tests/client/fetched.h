@@ -12,18 +12,16 @@
 
 namespace pmesh::test {
 
-/// Fetches a wish from `url`, without patience for silence.
+inline constexpr std::chrono::milliseconds kImpatient{200};
+
+/// Fetches a wish from `url`; a server's silence counts as a lost connection after `idle_timeout`.
 struct Fetched {
-  explicit Fetched(const std::string& url, const char* query = "")
-      : transport(make_transport(*parse_mesh_url(url), transport_options())),
+  explicit Fetched(const std::string& url, const char* query = "",
+                   std::chrono::milliseconds idle_timeout = std::chrono::seconds(20))
+      : transport(make_transport(*parse_mesh_url(url), {.idle_timeout = idle_timeout})),
         client(*transport, stream_options()),
         status(client.fetch(wish(query))) {}
 
-  static TransportOptions transport_options() {
-    TransportOptions options;
-    options.idle_timeout = std::chrono::milliseconds(300);
-    return options;
-  }
   static StreamOptions stream_options() {
     StreamOptions options;
     options.retry.first_delay = std::chrono::milliseconds(1);

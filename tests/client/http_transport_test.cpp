@@ -11,6 +11,7 @@ namespace {
 
 using test::Fetched;
 using test::HttpHost;
+using test::kImpatient;
 using test::random_cuts;
 using test::sample_file;
 using test::sample_index;
@@ -88,7 +89,7 @@ TEST(HttpTransport, GivesUpOnAHostThatStaysBusy) {
 
 TEST(HttpTransport, LeavesAStalledResponseAndAsksAgain) {
   HttpHost host(sample_file(), {.stalls = 2});
-  const Fetched fetched(host.url());
+  const Fetched fetched(host.url(), "", kImpatient);
   EXPECT_EQ(fetched.error(), "");
   EXPECT_TRUE(fetched.is_sample());
 }
@@ -96,7 +97,7 @@ TEST(HttpTransport, LeavesAStalledResponseAndAsksAgain) {
 TEST(HttpTransport, GivesUpOnAHostThatStallsForEver) {
   HttpHost host({},
                 {.stalls = 100, .raw_answer = "HTTP/1.1 206 Partial Content\r\nContent-Length"});
-  EXPECT_NE(Fetched(host.url()).error().find("gave up"), std::string::npos);
+  EXPECT_NE(Fetched(host.url(), "", kImpatient).error().find("gave up"), std::string::npos);
 }
 
 TEST(HttpTransport, NoticesWrongBytes) {

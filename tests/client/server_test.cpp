@@ -75,7 +75,7 @@ class RealServer : public testing::Test {
 
   static Result<FetchReport> fetch(const std::string& url, const char* query,
                                    const std::string& output) {
-    const auto transport = make_transport(*parse_mesh_url(url), Fetched::transport_options());
+    const auto transport = make_transport(*parse_mesh_url(url), {});
     return fetch_to_file(*transport, {wish(query), output, false}, Fetched::stream_options());
   }
 

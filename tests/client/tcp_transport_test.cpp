@@ -13,6 +13,7 @@ namespace pmesh {
 namespace {
 
 using test::Fetched;
+using test::kImpatient;
 using test::LoopbackServer;
 using test::Peer;
 using test::random_cuts;
@@ -151,7 +152,7 @@ TEST(TcpTransport, AnswersPingsBetweenTheData) {
 
 TEST(TcpTransport, LeavesAServerThatStallsAndAsksAgain) {
   FrameServer server({.stalls = 2});
-  const Fetched fetched(server.url());
+  const Fetched fetched(server.url(), "", kImpatient);
   EXPECT_EQ(fetched.error(), "");
   EXPECT_TRUE(fetched.is_sample());
 }
