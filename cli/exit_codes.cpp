@@ -6,11 +6,16 @@ namespace pmesh::cli {
 
 int exit_code(ErrorCode code) {
   switch (code) {
-    case ErrorCode::runtime: return kExitRuntime;
-    case ErrorCode::usage: return kExitUsage;
-    case ErrorCode::bad_input: return kExitBadInput;
-    case ErrorCode::verification: return kExitVerification;
-    case ErrorCode::out_of_resources: return kExitResources;
+    case ErrorCode::runtime:
+      return kExitRuntime;
+    case ErrorCode::usage:
+      return kExitUsage;
+    case ErrorCode::bad_input:
+      return kExitBadInput;
+    case ErrorCode::verification:
+      return kExitVerification;
+    case ErrorCode::out_of_resources:
+      return kExitResources;
   }
   return kExitRuntime;
 }

@@ -1,8 +1,9 @@
 // pmesh extract: one level of detail of a PM file as a mesh file.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+
+#include <CLI/CLI.hpp>
 
 #include "cli/exit_codes.h"
 #include "cli/verb.h"

@@ -1,7 +1,8 @@
 // pmesh info: what a PM file's header and index say.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/exit_codes.h"

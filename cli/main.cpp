@@ -1,8 +1,9 @@
 // pmesh: one binary, a verb each for the steps from a mesh file to a level of detail.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <new>
+
+#include <CLI/CLI.hpp>
 
 #include "cli/exit_codes.h"
 #include "cli/verb.h"
@@ -10,7 +11,8 @@
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app{"pmesh: precompute, serve and fetch any level of detail of a triangle mesh", "pmesh"};
+  CLI::App app{"pmesh: precompute, serve and fetch any level of detail of a triangle mesh",
+               "pmesh"};
   app.set_version_flag("--version", PMESH_VERSION);
   app.require_subcommand(1);
   int exit_status = pmesh::cli::kExitOk;

@@ -1,16 +1,16 @@
 // pmesh precompute: mesh file in, PM file out, and a report of all that was done to it.
 #include "core/precompute/precompute.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <CLI/CLI.hpp>
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <thread>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "cli/exit_codes.h"
 #include "cli/verb.h"
@@ -160,9 +160,9 @@ int run_precompute(Options& options) {
   if (options.quantization != 0) options.precompute.lattice_bits = options.quantization;
   options.precompute.overwrite = options.force ? Overwrite::yes : Overwrite::no;
   PhaseClock clock(!options.quiet && !options.json && isatty(STDERR_FILENO) != 0);
-  const Result<PrecomputeReport> result = precompute(
-      options.precompute,
-      [&](PrecomputePhase phase, double fraction) { clock.update(phase, fraction); });
+  const Result<PrecomputeReport> result =
+      precompute(options.precompute,
+                 [&](PrecomputePhase phase, double fraction) { clock.update(phase, fraction); });
   if (!result) return report("precompute", result.error());
   if (options.json) {
     std::printf("%s\n", to_json(options, *result, clock).dump(2).c_str());

@@ -1,13 +1,15 @@
 // pmesh verify: replays a PM file, checks every claim, and compares it with its source if asked.
-#include <CLI/CLI.hpp>
+#include "core/pm/verify.h"
+
 #include <cstdio>
 #include <memory>
+
+#include <CLI/CLI.hpp>
 
 #include "cli/exit_codes.h"
 #include "cli/verb.h"
 #include "core/io/clean.h"
 #include "core/io/import.h"
-#include "core/pm/verify.h"
 #include "core/precompute/quantise.h"
 
 namespace pmesh::cli {
@@ -26,8 +28,7 @@ Status compare_with_source(const VerifiedFile& file, const std::string& source) 
   const LatticeMesh expected{quantise(cleaned.mesh.positions, file.index.header.lattice),
                              std::move(cleaned.mesh.triangles)};
   if (!same_triangles(expected, file.full)) {
-    return Error{ErrorCode::verification,
-                 "the full mesh does not have the triangles of " + source};
+    return Error{ErrorCode::verification, "the full mesh does not have the triangles of " + source};
   }
   return {};
 }
@@ -55,8 +56,9 @@ void add_verify(CLI::App& app, int& exit_status) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* verb = app.add_subcommand("verify", "Replay a PM file and check every claim it makes");
   verb->add_option("FILE", options->file, "PM file")->required();
-  verb->add_option("--source", options->source,
-                   "The mesh it was made from: must have the same triangles, cleaned and quantised");
+  verb->add_option(
+      "--source", options->source,
+      "The mesh it was made from: must have the same triangles, cleaned and quantised");
   verb->callback([options, &exit_status] { exit_status = run_verify(*options); });
 }
 

@@ -1,5 +1,5 @@
-// Result<T>: a value or an Error. Input errors are values in pmesh, never exceptions: the decoder is
-// built without them. Misuse (reading the value of a failed Result) is an assert.
+// Result<T>: a value or an Error. Input errors are values in pmesh, never exceptions: the decoder
+// is built without them. Misuse (reading the value of a failed Result) is an assert.
 #pragma once
 
 #include <cassert>
@@ -36,7 +36,7 @@ inline Error prefixed(const std::string& where, Error error) {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}  // NOLINT: implicit
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}      // NOLINT: implicit
   Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT: implicit
 
   bool ok() const { return state_.index() == 0; }

@@ -1,14 +1,14 @@
 #include "core/pm/base_codec.h"
 
-#include <draco/attributes/point_attribute.h>
-#include <draco/compression/decode.h>
-#include <draco/compression/expert_encode.h>
-#include <draco/mesh/mesh.h>
-
 #include <algorithm>
 #include <memory>
 #include <new>
 #include <string>
+
+#include <draco/attributes/point_attribute.h>
+#include <draco/compression/decode.h>
+#include <draco/compression/expert_encode.h>
+#include <draco/mesh/mesh.h>
 
 namespace pmesh {
 namespace {
@@ -108,8 +108,8 @@ bool is_renaming(const LatticeMesh& base, const EncodedBase& coded) {
   }
   std::vector<Triangle> expected, found;
   for (const auto [a, b, c] : base.triangles) {
-    expected.push_back(normalised(
-        {coded.decoded_vertex[a], coded.decoded_vertex[b], coded.decoded_vertex[c]}));
+    expected.push_back(
+        normalised({coded.decoded_vertex[a], coded.decoded_vertex[b], coded.decoded_vertex[c]}));
   }
   for (const Triangle& t : decoded.triangles) found.push_back(normalised(t));
   std::sort(expected.begin(), expected.end());

@@ -1,10 +1,10 @@
 #include "core/pm/digest.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
+
+#include <openssl/evp.h>
 
 namespace pmesh {
 namespace {

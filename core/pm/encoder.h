@@ -15,13 +15,13 @@ namespace pmesh {
 
 /// What decimation left, all of it in the decimated mesh's vertex ids.
 struct EncodeInput {
-  const HalfEdgeMesh& base;            ///< After the last collapse of `log`.
-  std::span<const Vec3i> positions;    ///< Lattice positions of all vertices, removed ones too.
+  const HalfEdgeMesh& base;          ///< After the last collapse of `log`.
+  std::span<const Vec3i> positions;  ///< Lattice positions of all vertices, removed ones too.
   const CollapseLog& log;
   Lattice lattice;
-  std::string metric;      ///< Name and parameters, for the header; at most 64 bytes together.
+  std::string metric;  ///< Name and parameters, for the header; at most 64 bytes together.
   std::string parameters;
-  std::string unit;        ///< At most 16 bytes; may be empty.
+  std::string unit;  ///< At most 16 bytes; may be empty.
 };
 
 /// The whole file. Renames vertices: the base's come first, in the order Draco gives them, then

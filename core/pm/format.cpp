@@ -165,8 +165,8 @@ Status parse_header(ByteReader& reader, const Layout& layout, FileHeader& h) {
   h.base_faces = reader.get<std::uint64_t>();
   h.base_bytes = reader.get<std::uint64_t>();
   h.base_crc = reader.get<std::uint32_t>();
-  if (reader.get<std::uint8_t>() != kBaseCodecDraco ||
-      reader.get<std::uint8_t>() != kGraphLinear || reader.get<std::uint8_t>() != kSplitCodecPlain) {
+  if (reader.get<std::uint8_t>() != kBaseCodecDraco || reader.get<std::uint8_t>() != kGraphLinear ||
+      reader.get<std::uint8_t>() != kSplitCodecPlain) {
     return bad_input("header: unknown codec");
   }
   h.lattice.bits = reader.get<std::uint8_t>();
@@ -210,9 +210,9 @@ Status check_lattice(const FileHeader& h) {
 
 Status check_counts(const FileHeader& h, const DecodeLimits& limits) {
   if (h.faces > limits.max_faces || h.base_faces > limits.max_base_faces) {
-    return Error{ErrorCode::out_of_resources,
-                 "header: " + std::to_string(h.faces) + " faces (" + std::to_string(h.base_faces) +
-                     " in the base) exceed the limit"};
+    return Error{ErrorCode::out_of_resources, "header: " + std::to_string(h.faces) + " faces (" +
+                                                  std::to_string(h.base_faces) +
+                                                  " in the base) exceed the limit"};
   }
   // A face has three corners, and every vertex has a face.
   if (h.base_faces == 0 || h.base_vertices < 3 || h.base_vertices > 3 * h.base_faces) {
@@ -286,7 +286,8 @@ Bytes write_prologue(FileIndex& index) {
   put_header(writer, index);
   for (const ChunkRow& row : index.chunks) put_row(writer, row);
   const std::uint32_t crc = prologue_crc(bytes);
-  for (std::size_t i = 0; i < 4; ++i) bytes[kCrcOffset + i] = static_cast<std::uint8_t>(crc >> 8 * i);
+  for (std::size_t i = 0; i < 4; ++i)
+    bytes[kCrcOffset + i] = static_cast<std::uint8_t>(crc >> 8 * i);
   return bytes;
 }
 

@@ -47,12 +47,12 @@ struct FileHeader {
   std::uint32_t base_crc = 0;  ///< CRC-32C of the base's bytes.
   SectionDigest base_digest{};
   Lattice lattice;
-  Vec3i box_low, box_high;  ///< The full mesh's bounding box on the lattice.
-  bool has_borders = false;       ///< Border splits may occur.
-  bool errors_measured = false;   ///< The rows' max_error and rms_error hold.
-  std::string metric;      ///< Decimation metric by name, e.g. "melod".
-  std::string parameters;  ///< Its parameters, e.g. "lambda=10".
-  std::string unit;        ///< Unit of length, e.g. "m"; empty if not known.
+  Vec3i box_low, box_high;       ///< The full mesh's bounding box on the lattice.
+  bool has_borders = false;      ///< Border splits may occur.
+  bool errors_measured = false;  ///< The rows' max_error and rms_error hold.
+  std::string metric;            ///< Decimation metric by name, e.g. "melod".
+  std::string parameters;        ///< Its parameters, e.g. "lambda=10".
+  std::string unit;              ///< Unit of length, e.g. "m"; empty if not known.
 };
 
 /// One chunk of vertex splits, and the mesh after it.
@@ -71,7 +71,7 @@ struct ChunkRow {
 
 struct FileIndex {
   FileHeader header;
-  std::vector<ChunkRow> chunks;  ///< Contiguous, in order; may be empty.
+  std::vector<ChunkRow> chunks;      ///< Contiguous, in order; may be empty.
   std::uint32_t prologue_bytes = 0;  ///< Header and index; the base begins here.
 
   std::uint64_t base_end() const { return prologue_bytes + header.base_bytes; }

@@ -42,9 +42,9 @@ Result<PmFile> PmFile::open(const std::string& path) {
 }
 
 std::size_t PmFile::whole_chunks() const {
-  const auto cut = std::partition_point(
-      index_.chunks.begin(), index_.chunks.end(),
-      [&](const ChunkRow& row) { return row.end() <= bytes_on_disk(); });
+  const auto cut =
+      std::partition_point(index_.chunks.begin(), index_.chunks.end(),
+                           [&](const ChunkRow& row) { return row.end() <= bytes_on_disk(); });
   return static_cast<std::size_t>(cut - index_.chunks.begin());
 }
 

@@ -66,9 +66,8 @@ class SplitDecoder {
     std::uint32_t quotient = 0;
     while (quotient < kRiceEscape && bits_.get(1) == 1) ++quotient;
     const int parameter = model.parameter();
-    const std::uint32_t value = quotient == kRiceEscape
-                                    ? bits_.get(32)
-                                    : (quotient << parameter) + bits_.get(parameter);
+    const std::uint32_t value =
+        quotient == kRiceEscape ? bits_.get(32) : (quotient << parameter) + bits_.get(parameter);
     model.update(value);
     return value;
   }

@@ -24,7 +24,8 @@ Status StreamDecoder::feed(ByteView bytes) {
       continue;
     }
     const std::size_t taken = std::min<std::uint64_t>(wanted - pending_.size(), bytes.size());
-    pending_.insert(pending_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken));
+    pending_.insert(pending_.end(), bytes.begin(),
+                    bytes.begin() + static_cast<std::ptrdiff_t>(taken));
     bytes = bytes.subspan(taken);
     if (!has_index()) {
       take_prologue();

@@ -47,9 +47,9 @@ Status replay(const PmFile& file, StreamDecoder& decoder) {
 
 Status check_content(const PmFile& file, StreamDecoder& decoder) {
   if (!file.complete()) {
-    return bad_input("incomplete: " +
-                     std::to_string(file.index().header.file_bytes - file.bytes_on_disk()) +
-                     " bytes are missing");
+    return bad_input(
+        "incomplete: " + std::to_string(file.index().header.file_bytes - file.bytes_on_disk()) +
+        " bytes are missing");
   }
   if (Status s = replay(file, decoder); !s) return s;
   if (Status s = decoder.mesh().connectivity().validate(); !s) return s;

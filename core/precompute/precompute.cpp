@@ -95,7 +95,8 @@ Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
   report_file(*file, report);
 
   progress(PrecomputePhase::write, 0);
-  if (Status written = write_file(options.output, *file, options.overwrite); !written) return written.error();
+  if (Status written = write_file(options.output, *file, options.overwrite); !written)
+    return written.error();
   progress(PrecomputePhase::done, 1);
   return report;
 }

@@ -14,23 +14,24 @@
 namespace pmesh {
 
 struct PrecomputeOptions {
-  std::string input;   ///< PLY, OBJ, STL or OFF, by extension.
+  std::string input;  ///< PLY, OBJ, STL or OFF, by extension.
   std::string output;
   std::string metric = "melod";
-  std::optional<int> lattice_bits;  ///< kMinLatticeBits to kMaxLatticeBits; else chosen by the mesh.
-  std::uint32_t base_faces = 200;   ///< Decimation stops here, or where topology ends it.
-  unsigned threads = 1;             ///< The output does not depend on it.
+  std::optional<int>
+      lattice_bits;                ///< kMinLatticeBits to kMaxLatticeBits; else chosen by the mesh.
+  std::uint32_t base_faces = 200;  ///< Decimation stops here, or where topology ends it.
+  unsigned threads = 1;            ///< The output does not depend on it.
   Overwrite overwrite = Overwrite::no;
 };
 
 enum class PrecomputePhase : std::uint8_t { import, clean, decimate, encode, write, done };
 
 struct PrecomputeReport {
-  std::uint64_t input_faces = 0;     ///< Triangles in the file, polygons cut into fans.
+  std::uint64_t input_faces = 0;  ///< Triangles in the file, polygons cut into fans.
   std::uint64_t input_vertices = 0;
-  std::uint64_t polygons = 0;        ///< Faces that had more than three corners.
+  std::uint64_t polygons = 0;  ///< Faces that had more than three corners.
   CleanReport cleaned;
-  std::uint64_t faces = 0;           ///< After cleaning: the full mesh.
+  std::uint64_t faces = 0;  ///< After cleaning: the full mesh.
   std::uint64_t vertices = 0;
   std::uint64_t base_faces = 0;
   std::uint64_t base_vertices = 0;

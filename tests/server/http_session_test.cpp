@@ -234,6 +234,26 @@ TEST_F(HttpSessionTest, DrainCutsTransfersAfterTheGracePeriod) {
   EXPECT_LT(client.receive_all().size(), bunny_.bytes.size());
 }
 
+TEST(Server, FirstSignalDrainsAndTheSecondStops) {
+  const TemporaryDirectory directory;
+  const SampleFile mesh = large_sample();
+  directory.write("bunny.pmesh", mesh.bytes);
+  ServerOptions options;
+  options.directory = directory / "";
+  options.http = "127.0.0.1:0";
+  const auto server = Server::open(options).value();
+  server->handle_signals();
+  std::thread running([&] { server->run(); });
+
+  TestClient transfer(server->http_address(), 4096), idle(server->http_address());
+  transfer.send(get_request("/bunny/" + mesh.hash() + ".pmesh"));
+  EXPECT_NE(transfer.receive(1), "");
+  ::kill(::getpid(), SIGTERM);
+  EXPECT_EQ(idle.receive_all(), "");  // it drains, and the transfer keeps it running
+  ::kill(::getpid(), SIGTERM);
+  running.join();
+}
+
 TEST(Server, NeedsAddressesThatCanBeBound) {
   const TemporaryDirectory directory;
   ServerOptions options;

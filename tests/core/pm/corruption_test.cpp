@@ -1,8 +1,8 @@
 // Hostile files: every cut, and thousands of flipped bytes, with and without checksums to stop
 // them early. Under ASan and UBSan these tests are the proof that no byte is trusted.
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "core/pm/base_codec.h"
 #include "core/pm/stream_decoder.h"
@@ -50,8 +50,8 @@ TEST(Corruption, TenThousandFlippedBytesAreAllNoticed) {
 }
 
 TEST(Corruption, FlippedBytesPastTheChecksumsGiveAnErrorOrAValidMesh) {
-  for (const IndexedMesh& mesh :
-       {shapes::bumped(shapes::genus(2), 0.01), shapes::grid_with_ears(8), shapes::components(30)}) {
+  for (const IndexedMesh& mesh : {shapes::bumped(shapes::genus(2), 0.01), shapes::grid_with_ears(8),
+                                  shapes::components(30)}) {
     const EncodedShape shape = encode_shape("shape", mesh);
     const FileIndex index = **parse_prologue(shape.file);
     std::mt19937 random(2);

@@ -1,8 +1,8 @@
 #include "core/pm/format.h"
 
-#include <gtest/gtest.h>
-
 #include <functional>
+
+#include <gtest/gtest.h>
 
 namespace pmesh {
 namespace {

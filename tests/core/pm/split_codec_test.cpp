@@ -74,8 +74,8 @@ TEST(SplitCodec, RefusesAPositionOffTheLattice) {
   const FileHeader header = header_with_borders();
   RefinableMesh mesh = *RefinableMesh::from_base(square());
   BitWriter bits;
-  bits.put(1, 2);              // border_first
-  bits.put(0, 3 + 3);          // half-edge 0, no moved face
+  bits.put(1, 2);                // border_first
+  bits.put(0, 3 + 3);            // half-edge 0, no moved face
   bits.put((1u << 24) - 1, 24);  // escape: the value itself
   bits.put(zigzag(-1), 32);
   bits.put(0, 7);

@@ -1,8 +1,8 @@
 #include "core/pm/verify.h"
 
-#include <gtest/gtest.h>
-
 #include <functional>
+
+#include <gtest/gtest.h>
 
 #include "core/base/crc32c.h"
 #include "core/pm/digest.h"
@@ -67,8 +67,9 @@ TEST_F(Verify, SeesThroughForgedClaims) {
   EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.box_low.x += 1; })), "wrong bounding box");
   EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.has_borders = true; })).substr(0, 8),
             "chunk 0:");
-  EXPECT_EQ(error_of(forged([](FileIndex& i) { i.chunks[0].vertices += 1, i.chunks[0].faces += 2; }))
-                .substr(0, 8),
+  EXPECT_EQ(error_of(forged([](FileIndex& i) {
+              i.chunks[0].vertices += 1, i.chunks[0].faces += 2;
+            })).substr(0, 8),
             "chunk 0:");
 }
 

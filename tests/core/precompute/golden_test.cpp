@@ -1,11 +1,11 @@
 // Files that every later version must write, and decode, to the same digests. A change of format
 // or of the decimation order changes them on purpose: then they are made anew, in the same commit,
 // with PMESH_WRITE_GOLDEN=1.
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+
+#include <gtest/gtest.h>
 
 #include "core/base/crc32c.h"
 #include "core/pm/base_codec.h"

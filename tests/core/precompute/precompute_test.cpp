@@ -1,9 +1,9 @@
 #include "core/precompute/precompute.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/files/read_file.h"
 #include "core/pm/verify.h"
@@ -62,8 +62,8 @@ TEST_F(Precompute, TakesEveryNonManifoldShape) {
     const PrecomputeOptions options = options_for(shape.mesh);
     const auto report = precompute(options, kSilent);
     ASSERT_TRUE(report.ok()) << shape.name << ": " << report.error().message;
-    EXPECT_EQ(report->faces, shape.mesh.triangles.size() - report->cleaned.degenerate -
-                                 report->cleaned.duplicate);
+    EXPECT_EQ(report->faces,
+              shape.mesh.triangles.size() - report->cleaned.degenerate - report->cleaned.duplicate);
     EXPECT_TRUE(verify_file(options.output).ok()) << shape.name;
   }
 }
@@ -87,9 +87,9 @@ TEST_F(Precompute, GoesThroughItsPhasesInOrder) {
         if (phases.empty() || phases.back() != phase) phases.push_back(phase);
       });
   ASSERT_TRUE(report.ok());
-  EXPECT_EQ(phases, (std::vector{PrecomputePhase::import, PrecomputePhase::clean,
-                                 PrecomputePhase::decimate, PrecomputePhase::encode,
-                                 PrecomputePhase::write, PrecomputePhase::done}));
+  EXPECT_EQ(phases,
+            (std::vector{PrecomputePhase::import, PrecomputePhase::clean, PrecomputePhase::decimate,
+                         PrecomputePhase::encode, PrecomputePhase::write, PrecomputePhase::done}));
 }
 
 TEST_F(Precompute, KeepsAnExistingFileUnlessToldOtherwise) {

@@ -1,8 +1,8 @@
 #include "core/refine/refinable_mesh.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "core/pm/base_codec.h"
 #include "core/pm/stream_decoder.h"
