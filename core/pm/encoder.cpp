@@ -49,7 +49,7 @@ class ChunkWriter {
               std::vector<VertexId> file_ids)
       : input_(input),
         header_(header),
-        mesh_(std::move(*RefinableMesh::from_base(base))),
+        mesh_(RefinableMesh::from_base(base).value()),
         file_ids_(std::move(file_ids)) {
     mesh_.reserve(static_cast<std::uint32_t>(header.vertices),
                   static_cast<std::uint32_t>(header.faces));
