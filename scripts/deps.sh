@@ -4,9 +4,9 @@
 # missing.
 set -euo pipefail
 
-build=(cmake g++ ninja-build libboost1.81-dev libcli11-dev libdraco-dev libspdlog-dev libssl-dev
-  nlohmann-json3-dev)
-test=(clang-format clang-tidy curl jq libgtest-dev libmeshoptimizer-dev zstd)
+build=(cmake g++ ninja-build libboost1.81-dev libcli11-dev libdraco-dev libgtest-dev libspdlog-dev
+  libssl-dev nlohmann-json3-dev)
+test=(clang-format clang-tidy curl jq libmeshoptimizer-dev zstd)
 demo=(ca-certificates curl jq nodejs npm)
 fuzz=(clang libclang-rt-14-dev)
 run=(libdraco7 libspdlog1.10 libssl3)
