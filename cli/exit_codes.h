@@ -1,4 +1,8 @@
 // Exit statuses of every verb, and the one way errors reach the user.
+//
+// A bad file gives every verb that reads it the same status: kExitBadInput if it is no PM file;
+// kExitVerification if it is one, but damaged (checksums, digests, counts, impossible splits) or
+// cut short of its base. Only `verify` also minds a file that holds its base but not all chunks.
 #pragma once
 
 #include <string_view>

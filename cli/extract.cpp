@@ -5,10 +5,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/check_distinct.h"
 #include "cli/exit_codes.h"
 #include "cli/verb.h"
 #include "cli/wish_options.h"
 #include "client/apply_wish.h"
+#include "client/verified_prefix.h"
 #include "core/io/export.h"
 #include "core/pm/pm_file.h"
 #include "protocol/lod_request.h"
@@ -26,6 +28,9 @@ int run_extract(const ExtractOptions& options) {
   const std::optional<MeshFormat> format = mesh_format_of(options.output);
   if (format != MeshFormat::ply && format != MeshFormat::obj) {
     return report("extract", {ErrorCode::usage, options.output + ": expected .ply or .obj"});
+  }
+  if (Status distinct = check_distinct(options.file, options.output); !distinct) {
+    return report("extract", distinct.error());
   }
   const Result<PmFile> file = PmFile::open(options.file);
   if (!file) return report("extract", file.error());

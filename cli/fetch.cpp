@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
+#include "cli/check_distinct.h"
 #include "cli/exit_codes.h"
+#include "cli/json.h"
 #include "cli/progress_bar.h"
 #include "cli/verb.h"
 #include "cli/wish_options.h"
@@ -57,10 +59,14 @@ class FetchDisplay {
     options.cancel = &interrupted;
     options.on_progress = [this](const StreamProgress& progress) { show(progress); };
     options.on_retry = [this](const Error& error) {
-      if (!quiet_) std::fprintf(stderr, "pmesh fetch: %s; trying again\n", error.message.c_str());
+      if (quiet_) return;
+      bar_.end_line();
+      std::fprintf(stderr, "pmesh fetch: %s; trying again\n", error.message.c_str());
     };
     return options;
   }
+
+  void end_line() { bar_.end_line(); }
 
   double seconds() const { return seconds_since(start_); }
   std::optional<double> first_picture_seconds() const { return first_picture_; }
@@ -80,22 +86,20 @@ class FetchDisplay {
   std::optional<double> first_picture_;
 };
 
-void print_json(const FetchArguments& arguments, const FetchReport& report,
-                const FetchDisplay& display) {
-  nlohmann::ordered_json json = {{"url", arguments.url},
-                                 {"hash", to_hex(report.hash)},
-                                 {"faces", report.faces},
-                                 {"vertices", report.vertices},
-                                 {"bytes_fetched", report.bytes_fetched},
-                                 {"bytes_total", report.bytes_total},
-                                 {"reached", report.reached},
-                                 {"complete", report.complete},
-                                 {"seconds", display.seconds()},
-                                 {"first_picture_seconds", nullptr},
-                                 {"output", arguments.output}};
-  if (const auto first = display.first_picture_seconds()) json["first_picture_seconds"] = *first;
-  using Json = nlohmann::ordered_json;
-  std::puts(json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+Json to_json(const FetchArguments& arguments, const FetchReport& report,
+             const FetchDisplay& display) {
+  const auto first_picture = display.first_picture_seconds();
+  return {{"url", arguments.url},
+          {"hash", to_hex(report.hash)},
+          {"faces", report.faces},
+          {"vertices", report.vertices},
+          {"bytes_fetched", report.bytes_fetched},
+          {"bytes_total", report.bytes_total},
+          {"reached", report.reached},
+          {"complete", report.complete},
+          {"seconds", display.seconds()},
+          {"first_picture_seconds", first_picture ? Json(*first_picture) : Json(nullptr)},
+          {"output", arguments.output}};
 }
 
 void print_note(const FetchArguments& arguments, const FetchReport& report) {
@@ -114,6 +118,11 @@ void print_note(const FetchArguments& arguments, const FetchReport& report) {
 Result<FetchReport> fetch(const FetchArguments& arguments, FetchDisplay& display) {
   const Result<MeshUrl> url = parse_mesh_url(arguments.url);
   if (!url) return url.error();
+  if (const auto* local = std::get_if<LocalFile>(&*url)) {
+    if (Status distinct = check_distinct(local->path, arguments.output); !distinct) {
+      return distinct.error();
+    }
+  }
   TransportOptions options;
   options.cancel = &interrupted;
   const std::unique_ptr<Transport> transport = make_transport(*url, options);
@@ -123,14 +132,11 @@ Result<FetchReport> fetch(const FetchArguments& arguments, FetchDisplay& display
 
 int run(const FetchArguments& arguments) {
   cancel_on_interrupt();
-  std::optional<FetchDisplay> display(std::in_place, arguments);
-  const Result<FetchReport> report = fetch(arguments, *display);
-  if (!report) {
-    display.reset();  // ends the progress bar's line
-    return cli::report("fetch", report.error());
-  }
-  if (arguments.json) print_json(arguments, *report, *display);
-  display.reset();
+  FetchDisplay display(arguments);
+  const Result<FetchReport> report = fetch(arguments, display);
+  display.end_line();
+  if (!report) return cli::report("fetch", report.error());
+  if (arguments.json) print_json(to_json(arguments, *report, display));
   print_note(arguments, *report);
   return kExitOk;
 }

@@ -3,16 +3,14 @@
 #include <memory>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "cli/exit_codes.h"
+#include "cli/json.h"
 #include "cli/verb.h"
 #include "core/pm/pm_file.h"
 
 namespace pmesh::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
   std::string file;
@@ -92,7 +90,7 @@ int run_info(const InfoOptions& options) {
   const Result<PmFile> file = PmFile::open(options.file);
   if (!file) return report("info", file.error());
   if (options.json) {
-    std::printf("%s\n", to_json(*file).dump(2).c_str());
+    print_json(to_json(*file));
   } else {
     print_text(*file);
   }

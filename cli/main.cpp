@@ -1,4 +1,5 @@
 // pmesh: one binary, a verb each for the steps from a mesh file to a level of detail.
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -30,11 +31,20 @@ int run(int argc, char** argv) {
   return exit_status;
 }
 
+// What was printed must have arrived, on a disk that is not full; a failure before that goes first.
+int flush_output(int exit_status) {
+  const bool is_lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  if (!is_lost) return exit_status;
+  std::fputs("pmesh: standard output could not be written\n", stderr);
+  return exit_status == pmesh::cli::kExitOk ? pmesh::cli::kExitRuntime : exit_status;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit on file sizes is to fail, not to kill
   try {
-    return run(argc, argv);
+    return flush_output(run(argc, argv));
   } catch (const std::bad_alloc&) {
     std::fputs("pmesh: out of memory\n", stderr);
     return pmesh::cli::kExitResources;

@@ -8,17 +8,16 @@
 #include <thread>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
-#include <unistd.h>
 
+#include "cli/check_distinct.h"
 #include "cli/exit_codes.h"
+#include "cli/json.h"
+#include "cli/progress_bar.h"
 #include "cli/verb.h"
 
 namespace pmesh::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   PrecomputeOptions precompute;
@@ -28,24 +27,15 @@ struct Options {
   bool quiet = false;
 };
 
-// Seconds spent in each phase, and a line on the terminal that says where the work stands.
+// Seconds spent in each phase.
 class PhaseClock {
  public:
-  explicit PhaseClock(bool show) : show_(show) {}
-
-  void update(PrecomputePhase phase, double fraction) {
-    if (phase != phase_) {
-      const auto now = Clock::now();
-      seconds_[static_cast<std::size_t>(phase_)] += since(entered_, now);
-      phase_ = phase;
-      entered_ = now;
-    }
-    if (!show_) return;
-    if (phase == PrecomputePhase::done) {
-      std::fprintf(stderr, "\r\033[K");
-    } else {
-      std::fprintf(stderr, "\r\033[K%s %3.0f%%", name(phase), 100 * fraction);
-    }
+  void enter(PrecomputePhase phase) {
+    if (phase == phase_) return;
+    const auto now = Clock::now();
+    seconds_[static_cast<std::size_t>(phase_)] += since(entered_, now);
+    phase_ = phase;
+    entered_ = now;
   }
 
   double seconds(PrecomputePhase phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
@@ -62,7 +52,6 @@ class PhaseClock {
     return std::chrono::duration<double>(to - from).count();
   }
 
-  bool show_;
   PrecomputePhase phase_ = PrecomputePhase::import;
   Clock::time_point started_ = Clock::now();
   Clock::time_point entered_ = started_;
@@ -159,13 +148,21 @@ void print_text(const Options& options, const PrecomputeReport& report, const Ph
 int run_precompute(Options& options) {
   if (options.quantization != 0) options.precompute.lattice_bits = options.quantization;
   options.precompute.overwrite = options.force ? Overwrite::yes : Overwrite::no;
-  PhaseClock clock(!options.quiet && !options.json && isatty(STDERR_FILENO) != 0);
-  const Result<PrecomputeReport> result =
-      precompute(options.precompute,
-                 [&](PrecomputePhase phase, double fraction) { clock.update(phase, fraction); });
+  const PrecomputeOptions& job = options.precompute;
+  if (Status distinct = check_distinct(job.input, job.output); !distinct) {
+    return report("precompute", distinct.error());
+  }
+  PhaseClock clock;
+  ProgressBar bar(!options.quiet && !options.json);
+  const auto progress = [&](PrecomputePhase phase, double fraction) {
+    clock.enter(phase);
+    bar.show(static_cast<std::uint64_t>(100 * fraction), 100, PhaseClock::name(phase));
+  };
+  const Result<PrecomputeReport> result = precompute(job, progress);
+  bar.end_line();
   if (!result) return report("precompute", result.error());
   if (options.json) {
-    std::printf("%s\n", to_json(options, *result, clock).dump(2).c_str());
+    print_json(to_json(options, *result, clock));
   } else if (!options.quiet) {
     print_text(options, *result, clock);
   }
@@ -180,10 +177,11 @@ void add_precompute(CLI::App& app, int& exit_status) {
   job.threads = std::max(1u, std::thread::hardware_concurrency());
   CLI::App* verb = app.add_subcommand("precompute", "Turn a mesh into a progressive PM file");
   verb->add_option("IN", job.input, "Mesh file: .ply, .obj, .stl or .off")->required();
-  verb->add_option("-o,--output", job.output, "PM file to write")->required();
+  verb->add_option("-o,--output", job.output, "PM file to write: .pmesh")->required();
   verb->add_option("--metric", job.metric, "Decimation metric")->capture_default_str();
-  verb->add_option("--quantization", options->quantization,
-                   "Bits a coordinate; default: a step of at most 1/25 of the median edge")
+  verb->add_option(
+          "--quantization", options->quantization,
+          "Bits a coordinate; default: a step of at most 1/24 of the median edge, 10 to 20 bits")
       ->check(CLI::Range(kMinLatticeBits, kMaxLatticeBits));
   verb->add_option("--base-faces", job.base_faces, "Faces of the base mesh, if topology allows")
       ->check(CLI::Range(1u, 10'000'000u))

@@ -9,8 +9,9 @@ namespace pmesh::cli {
 
 ProgressBar::ProgressBar(bool wanted) : is_on_(wanted && ::isatty(STDERR_FILENO) == 1) {}
 
-ProgressBar::~ProgressBar() {
+void ProgressBar::end_line() {
   if (has_drawn_) std::fputc('\n', stderr);
+  has_drawn_ = false;
 }
 
 void ProgressBar::show(std::uint64_t done, std::uint64_t total, const std::string& note) {

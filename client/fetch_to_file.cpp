@@ -25,13 +25,6 @@ Status check_writable(const std::string& path) {
   return probe ? Status() : Status(probe.error());
 }
 
-Status write_file(const std::string& path, ByteView bytes) {
-  Result<AtomicFile> file = AtomicFile::create(path, Overwrite::yes);
-  if (!file) return file.error();
-  if (Status written = file->write(bytes); !written) return written;
-  return file->commit();
-}
-
 FetchReport report_of(const StreamingClient& client) {
   const FileHeader& header = client.prefix().index()->header;
   FetchReport report;
@@ -91,19 +84,35 @@ class PrefixFetch {
     const std::uint64_t least = continues() ? std::min(bytes_before_, held.size()) : 0;
     written_ = held.first(std::min(std::max(wish_end, least), held.size()));
     if (continues() && written_.size() <= bytes_before_) return {};
-    return write_file(job_.output, written_);
+    return write_file(job_.output, written_, Overwrite::yes);
   }
 
+  // Writes what had come before `error` if that is more than was there, and says what to do next.
   Error keep_progress(Error error) {
     const ByteView held = client_.prefix().verified();
-    if (!client_.prefix().has_base() || held.size() <= bytes_before_) return error;
-    if (const Status kept = write_file(job_.output, held); !kept) {
-      error.message += "; and the bytes that had come are lost: " + kept.error().message;
-    } else {
-      error.message += "; " + job_.output + " holds the " + std::to_string(held.size()) +
-                       " bytes that had come: run again to continue";
+    const bool is_more = client_.prefix().has_base() && held.size() > bytes_before_;
+    if (is_more) {
+      if (const Status kept = write_file(job_.output, held, Overwrite::yes); !kept) {
+        error.message += "; and the bytes that had come are lost: " + kept.error().message;
+        return error;
+      }
+      error.message +=
+          "; " + job_.output + " holds the " + std::to_string(held.size()) + " bytes that had come";
     }
+    if (is_more || continues()) error.message += advice();
     return error;
+  }
+
+  const char* advice() const {
+    switch (client_.remedy()) {
+      case Remedy::try_again:
+        return job_.force ? "; run again, without --force, to continue" : "; run again to continue";
+      case Remedy::start_over:
+        return "; --force starts over";
+      case Remedy::none:
+        break;
+    }
+    return "";
   }
 
   FetchReport report(const Resolution& wished) const {

@@ -1,9 +1,10 @@
 #include "client/mesh_url.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
+#include "core/base/parse_number.h"
+#include "protocol/letters.h"
 #include "protocol/mesh_id.h"
 
 namespace pmesh {
@@ -18,13 +19,6 @@ struct UrlParts {
 
 Error bad_url(std::string_view url, const std::string& why) {
   return {ErrorCode::usage, "URL \"" + std::string(url) + "\": " + why};
-}
-
-std::optional<std::uint16_t> parse_port(std::string_view digits) {
-  std::uint16_t port = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-  if (error != std::errc() || end != digits.data() + digits.size() || port == 0) return {};
-  return port;
 }
 
 bool is_host_character(char c) {
@@ -51,8 +45,8 @@ std::optional<Endpoint> parse_authority(std::string_view text) {
   if (endpoint.host.empty()) return {};
   const std::string_view rest = text.substr(host_end);
   if (rest.empty()) return endpoint;
-  const std::optional<std::uint16_t> port = parse_port(rest.substr(1));
-  if (rest.front() != ':' || !port) return {};
+  const auto port = parse_whole<std::uint16_t>(rest.substr(1));
+  if (rest.front() != ':' || !port || *port == 0) return {};
   endpoint.port = *port;
   return endpoint;
 }
@@ -88,7 +82,8 @@ Result<MeshUrl> parse_http(std::string_view url) {
 Result<MeshUrl> parse_tcp(std::string_view url) {
   const Result<UrlParts> parts = parse_parts(url, 0);
   if (!parts) return parts.error();
-  const std::string_view id = parts->target.empty() ? "" : parts->target.substr(1);
+  const std::string_view target = parts->target;
+  const std::string_view id = target.starts_with('/') ? target.substr(1) : "";
   if (!is_mesh_id(id)) return bad_url(url, "expected a mesh's id, as in tcp://HOST:PORT/ID");
   return MeshUrl(TcpMesh{parts->endpoint, std::string(id)});
 }
@@ -102,11 +97,9 @@ std::string Endpoint::text() const {
 
 Result<MeshUrl> parse_mesh_url(std::string_view text) {
   if (text.empty()) return Error{ErrorCode::usage, "the URL is empty"};
-  const std::size_t scheme_end = text.find("://");
-  if (scheme_end == std::string_view::npos) return MeshUrl(LocalFile{std::string(text)});
-  const std::string_view scheme = text.substr(0, scheme_end);
-  if (scheme == "http") return parse_http(text);
-  if (scheme == "tcp") return parse_tcp(text);
+  if (text.find("://") == std::string_view::npos) return MeshUrl(LocalFile{std::string(text)});
+  if (begins_in_any_case(text, "http://")) return parse_http(text);
+  if (begins_in_any_case(text, "tcp://")) return parse_tcp(text);
   return bad_url(text, "expected http://, tcp:// or a path");
 }
 

@@ -3,7 +3,8 @@
 //   http://HOST[:PORT]/PATH.pmesh[?QUERY]   a PM file on any web server
 //   tcp://HOST:PORT/ID                      a pmesh server's frame protocol
 //   PATH                                    a PM file on this machine
-// HOST may be an IPv6 address in brackets. ID is as in protocol/mesh_id.h.
+// The scheme's case does not matter. HOST may be an IPv6 address in brackets. ID is as in
+// protocol/mesh_id.h.
 #pragma once
 
 #include <cstdint>

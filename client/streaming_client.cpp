@@ -40,10 +40,11 @@ Status StreamingClient::resume_from(ByteView prefix) {
   assert(prefix_.size() == 0);
   if (Status taken = take(prefix); !taken) return taken;
   prefix_.drop_unfinished();
-  return prefix_.has_base() ? Status() : bad_input("ends before its base mesh does");
+  return prefix_.has_base() ? Status() : damaged("ends before its base mesh does");
 }
 
 Status StreamingClient::fetch(const LodRequest& wish) {
+  remedy_ = Remedy::none;
   int failures = 0;
   std::chrono::milliseconds delay = options_.retry.first_delay;
   for (;;) {
@@ -55,6 +56,7 @@ Status StreamingClient::fetch(const LodRequest& wish) {
       failures = 0;
       delay = options_.retry.first_delay;
     }
+    if (failed->retryable || is_cancelled()) remedy_ = Remedy::try_again;
     if (!failed->retryable) return failed->error;
     if (++failures >= options_.retry.max_failures) return gave_up(failed->error, failures);
     if (options_.on_retry) options_.on_retry(failed->error);
@@ -72,11 +74,11 @@ TransportStatus StreamingClient::attempt(const LodRequest& wish) {
     const std::uint64_t held = prefix_.size();
     if (auto failed = read(wish)) return failed;
     if (prefix_.size() == held && !has_all_of(wish)) {
-      return bad_bytes(bad_input("the file ends at byte " + std::to_string(held)));
+      return bad_bytes(damaged("the file ends at byte " + std::to_string(held)));
     }
   }
   if (prefix_.has_base()) return std::nullopt;
-  return bad_bytes(bad_input("the file ends before its base mesh does"));
+  return bad_bytes(damaged("the file ends before its base mesh does"));
 }
 
 TransportStatus StreamingClient::open() {
@@ -95,7 +97,7 @@ TransportStatus StreamingClient::confirm_same_file() {
   bytes_fetched_ += start.size();
   if (failed) return failed;
   if (std::ranges::equal(start, prefix_.verified().first(kIdentityBytes))) return std::nullopt;
-  return bad_bytes(runtime_error("the remote file is another than the one begun"));
+  return bad_bytes(another_file("its header differs"));
 }
 
 TransportStatus StreamingClient::read(const LodRequest& wish) {
@@ -127,15 +129,19 @@ Status StreamingClient::take(ByteView bytes) {
     if (Status same = check_hash(*transport_.remote().hash); !same) return same;
   }
   const ByteView whole = prefix_.verified().subspan(static_cast<std::size_t>(decoder_.fed_bytes()));
-  if (Status decoded = decoder_.feed(whole); !decoded) return decoded;
+  if (Status decoded = decoder_.feed(whole); !decoded) return decoded.error();
   return appended;
 }
 
-Status StreamingClient::check_hash(const ContentHash& remote) const {
+Status StreamingClient::check_hash(const ContentHash& remote) {
   const ContentHash& begun = prefix_.index()->header.content_hash;
   if (remote == begun) return {};
-  return runtime_error("the remote file is another than the one begun: its hash is " +
-                       to_hex(remote) + ", not " + to_hex(begun));
+  return another_file("its hash is " + to_hex(remote) + ", not " + to_hex(begun));
+}
+
+Error StreamingClient::another_file(const std::string& how) {
+  remedy_ = Remedy::start_over;
+  return runtime_error("the remote file is another than the one begun: " + how);
 }
 
 TransportError StreamingClient::bad_bytes(const Error& error) const {
@@ -164,7 +170,6 @@ void StreamingClient::report_progress(const LodRequest& wish) const {
 // False if cancelled meanwhile.
 bool StreamingClient::wait(std::chrono::milliseconds delay) const {
   constexpr std::chrono::milliseconds kCancelPoll{50};
-  const auto is_cancelled = [&] { return options_.cancel != nullptr && options_.cancel->load(); };
   for (; delay.count() > 0 && !is_cancelled(); delay -= kCancelPoll) {
     std::this_thread::sleep_for(std::min(delay, kCancelPoll));
   }

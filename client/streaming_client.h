@@ -31,6 +31,13 @@ struct StreamProgress {
   std::uint64_t faces = 0;         ///< Of the finest LOD so far; 0 before the base.
 };
 
+/// What the user may do after a fetch that failed.
+enum class Remedy : std::uint8_t {
+  none,
+  try_again,   ///< It was interrupted, or the connection failed: the same fetch may succeed later.
+  start_over,  ///< The remote file is another than the one begun.
+};
+
 struct StreamOptions {
   std::string name;  ///< Of the remote, put before errors about the bytes it gave; may be empty.
   RetryPolicy retry;
@@ -50,10 +57,14 @@ class StreamingClient {
   Status resume_from(ByteView prefix);
 
   /// Fetches what `wish` needs and is not held yet; may be called again with a finer wish. Fails
-  /// with the transport's last error; with `verification` if bytes do not match their digest; with
-  /// `runtime` if the remote file is another than the one begun. What came before the failure
+  /// with the transport's last error; as VerifiedPrefix::append() does, and with `verification` too
+  /// if a section that matches its digest cannot be decoded; with `runtime` if the remote file is
+  /// another than the one begun. What came before the failure
   /// stays. If the remote holds only a part of the file, success means that part.
   Status fetch(const LodRequest& wish);
+
+  /// Of the last fetch, if that has failed.
+  Remedy remedy() const { return remedy_; }
 
   const VerifiedPrefix& prefix() const { return prefix_; }
   /// Precondition: prefix().has_base(), and the last call did not fail to decode.
@@ -69,11 +80,13 @@ class StreamingClient {
   TransportStatus read(const LodRequest& wish);
   bool accept(const LodRequest& wish, std::uint64_t offset, ByteView bytes);
   Status take(ByteView bytes);
-  Status check_hash(const ContentHash& remote) const;
+  Status check_hash(const ContentHash& remote);
+  Error another_file(const std::string& how);
   TransportError bad_bytes(const Error& error) const;
   std::optional<std::uint64_t> end_of(const LodRequest& wish) const;
   bool has_all_of(const LodRequest& wish) const;
   void report_progress(const LodRequest& wish) const;
+  bool is_cancelled() const { return options_.cancel != nullptr && options_.cancel->load(); }
   bool wait(std::chrono::milliseconds delay) const;
 
   Transport& transport_;
@@ -82,6 +95,7 @@ class StreamingClient {
   VerifiedPrefix prefix_;
   StreamDecoder decoder_;
   std::uint64_t bytes_fetched_ = 0;
+  Remedy remedy_ = Remedy::none;
   Status failure_;  // of accept()
 };
 

@@ -25,7 +25,7 @@ Status VerifiedPrefix::check_whole_sections() {
     verified_bytes_ = static_cast<std::size_t>(*end);
   }
   if (!section_end() && bytes_.size() > verified_bytes_) {
-    return bad_input("bytes after the end of the PM file");
+    return damaged("bytes after the end of the PM file");
   }
   return {};
 }
@@ -36,7 +36,7 @@ Status VerifiedPrefix::take_prologue() {
   if (!*parsed) return {};
   const FileIndex& index = **parsed;
   if (hash_prologue(ByteView(bytes_).first(index.prologue_bytes)) != index.header.content_hash) {
-    return Error{ErrorCode::verification, "header and index do not match the content hash"};
+    return damaged("header and index do not match the content hash");
   }
   verified_bytes_ = index.prologue_bytes;
   index_ = std::move(*parsed);

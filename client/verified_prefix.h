@@ -16,9 +16,10 @@ class VerifiedPrefix {
  public:
   explicit VerifiedPrefix(const DecodeLimits& limits = {}) : limits_(limits) {}
 
-  /// Takes the bytes that follow those held, in any cuts. Fails if they are no PM file (bad_input),
-  /// a digest does not match (verification) or a limit is exceeded (out_of_resources); after that
-  /// verified() still holds what was checked, and the rest has been dropped.
+  /// Takes the bytes that follow those held, in any cuts. Fails if they are no PM file
+  /// (bad_input), if header, index or a section do not hold what they claim (verification) or if a
+  /// limit is exceeded (out_of_resources); after that verified() still holds
+  /// what was checked, and the rest has been dropped.
   Status append(ByteView bytes);
 
   /// Forgets the bytes after the last whole section.

@@ -4,18 +4,12 @@
 #include <limits>
 #include <optional>
 
+#include "protocol/letters.h"
+
 namespace pmesh {
 namespace {
 
 constexpr std::string_view kUnit = "bytes=";
-
-bool begins_with_unit(std::string_view header) {
-  const auto same_letter = [](char a, char b) {
-    return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
-  };
-  return header.size() >= kUnit.size() &&
-         std::equal(kUnit.begin(), kUnit.end(), header.begin(), same_letter);
-}
 
 /// The value of one or more digits; a number too large for 64 bits is as good as their largest.
 std::optional<std::uint64_t> parse_saturated(std::string_view digits) {
@@ -40,7 +34,7 @@ RangeChoice last_bytes(std::uint64_t count, std::uint64_t length) {
 }  // namespace
 
 RangeChoice choose_range(std::string_view header, std::uint64_t length) {
-  if (!begins_with_unit(header)) return whole(length);
+  if (!begins_in_any_case(header, kUnit)) return whole(length);
   header.remove_prefix(kUnit.size());
   const std::size_t dash = header.find('-');
   if (dash == std::string_view::npos) return whole(length);

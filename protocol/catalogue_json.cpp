@@ -12,7 +12,9 @@ using Json = nlohmann::ordered_json;
 
 Json vector_json(Vec3d point) { return Json::array({point.x, point.y, point.z}); }
 
-Json error_json(double distance) { return distance < 0 ? Json(nullptr) : Json(distance); }
+Json error_json(const FileHeader& header, double distance) {
+  return header.errors_measured ? Json(distance) : Json(nullptr);
+}
 
 /// The members that the catalogue and the mesh's own answer share.
 Json summary_json(const CatalogueEntry& entry) {
@@ -24,13 +26,13 @@ Json summary_json(const CatalogueEntry& entry) {
           {"faces", header.faces}};
 }
 
-Json chunk_json(const ChunkRow& row) {
+Json chunk_json(const FileHeader& header, const ChunkRow& row) {
   return {{"offset", row.offset},
           {"bytes", row.bytes},
           {"vertices", row.vertices},
           {"faces", row.faces},
-          {"max_error", error_json(row.max_error)},
-          {"rms_error", error_json(row.rms_error)}};
+          {"max_error", error_json(header, row.max_error)},
+          {"rms_error", error_json(header, row.rms_error)}};
 }
 
 /// The number, or text, named `key`; nothing if it is of another type.
@@ -56,7 +58,7 @@ std::string mesh_info_json(const CatalogueEntry& entry) {
   info["bbox"] = {{"min", vector_json(header.lattice.position(header.box_low))},
                   {"max", vector_json(header.lattice.position(header.box_high))}};
   Json chunks = Json::array();
-  for (const ChunkRow& row : entry.index->chunks) chunks.push_back(chunk_json(row));
+  for (const ChunkRow& row : entry.index->chunks) chunks.push_back(chunk_json(header, row));
   info["chunks"] = std::move(chunks);
   info["url"] = file_target(entry.id, header.content_hash);
   return info.dump();

@@ -24,7 +24,7 @@ std::string catalogue_json(const std::vector<CatalogueEntry>& entries);
 
 /// {id, hash, file_bytes, vertices, faces, base_faces, quantization, bbox {min, max}, chunks
 /// [{offset, bytes, vertices, faces, max_error, rms_error}], url}. The box is in the mesh's units;
-/// errors that were not measured are null.
+/// errors are null if the header says that none were measured.
 std::string mesh_info_json(const CatalogueEntry& entry);
 
 /// What a client takes from the answer of /{id}; the rest stands in the PM file itself.

@@ -3,43 +3,33 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
+
+#include "core/base/parse_number.h"
 
 namespace pmesh {
 namespace {
 
-Error usage(std::string message) { return {ErrorCode::usage, std::move(message)}; }
-
-template <class T>
-std::optional<T> parse_number(std::string_view text) {
-  T value{};
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) return {};
-  return value;
-}
-
 Result<LodRequest> parse_count(WishKind kind, std::string_view key, std::string_view value) {
-  const auto count = parse_number<std::uint64_t>(value);
-  if (!count) return usage("wish " + std::string(key) + ": expected a whole number");
+  const auto count = parse_whole<std::uint64_t>(value);
+  if (!count) return usage_error("wish " + std::string(key) + ": expected a whole number");
   return LodRequest{.kind = kind, .count = *count};
 }
 
 Result<LodRequest> parse_ratio(std::string_view value) {
-  const auto ratio = parse_number<double>(value);
+  const auto ratio = parse_whole<double>(value);
   if (!ratio || !(*ratio > 0 && *ratio <= 1)) {
-    return usage("wish ratio: expected a number above 0 and at most 1");
+    return usage_error("wish ratio: expected a number above 0 and at most 1");
   }
   return LodRequest{.kind = WishKind::ratio, .ratio = *ratio};
 }
 
 Result<LodRequest> parse_chunks(std::string_view value) {
   const std::size_t dash = value.find('-');
-  if (dash == std::string_view::npos) return usage("wish chunks: expected first-last");
-  const auto first = parse_number<std::uint64_t>(value.substr(0, dash));
-  const auto last = parse_number<std::uint64_t>(value.substr(dash + 1));
-  if (!first || !last) return usage("wish chunks: expected first-last");
-  if (*first > *last) return usage("wish chunks: the first is after the last");
+  if (dash == std::string_view::npos) return usage_error("wish chunks: expected first-last");
+  const auto first = parse_whole<std::uint64_t>(value.substr(0, dash));
+  const auto last = parse_whole<std::uint64_t>(value.substr(dash + 1));
+  if (!first || !last) return usage_error("wish chunks: expected first-last");
+  if (*first > *last) return usage_error("wish chunks: the first is after the last");
   return LodRequest{.kind = WishKind::chunks, .first_chunk = *first, .last_chunk = *last};
 }
 
@@ -135,7 +125,8 @@ Resolution resolve_bytes(std::uint64_t count, const FileIndex& index) {
 
 Result<Resolution> resolve_chunks(const LodRequest& wish, const FileIndex& index) {
   if (wish.last_chunk >= index.chunks.size()) {
-    return usage("wish chunks: the file has " + std::to_string(index.chunks.size()) + " chunks");
+    return usage_error("wish chunks: the file has " + std::to_string(index.chunks.size()) +
+                       " chunks");
   }
   Resolution pieces = prefix(index, static_cast<std::size_t>(wish.last_chunk) + 1);
   const auto first = static_cast<std::size_t>(wish.first_chunk);
@@ -147,9 +138,10 @@ Result<Resolution> resolve_chunks(const LodRequest& wish, const FileIndex& index
 
 Result<LodRequest> parse_wish(std::string_view query) {
   if (query.empty()) return LodRequest{};
-  if (query.find('&') != std::string_view::npos) return usage("expected one wish, found several");
+  if (query.find('&') != std::string_view::npos)
+    return usage_error("expected one wish, found several");
   const std::size_t equals = query.find('=');
-  if (equals == std::string_view::npos) return usage("expected a wish as key=value");
+  if (equals == std::string_view::npos) return usage_error("expected a wish as key=value");
   const std::string_view key = query.substr(0, equals);
   const std::string_view value = query.substr(equals + 1);
   if (key == "faces") return parse_count(WishKind::faces, key, value);
@@ -157,7 +149,7 @@ Result<LodRequest> parse_wish(std::string_view query) {
   if (key == "ratio") return parse_ratio(value);
   if (key == "bytes") return parse_count(WishKind::bytes, key, value);
   if (key == "chunks") return parse_chunks(value);
-  return usage("unknown wish; expected faces, vertices, ratio, bytes or chunks");
+  return usage_error("unknown wish; expected faces, vertices, ratio, bytes or chunks");
 }
 
 std::string to_query(const LodRequest& wish) {

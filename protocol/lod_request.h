@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/base/result.h"
 #include "core/pm/format.h"
@@ -31,6 +32,9 @@ struct LodRequest {
 
   friend bool operator==(const LodRequest&, const LodRequest&) = default;
 };
+
+/// The error of a request that makes no sense.
+inline Error usage_error(std::string message) { return {ErrorCode::usage, std::move(message)}; }
 
 /// Parses a wish as spelled in an HTTP query without its '?': "" (everything), "faces=1000",
 /// "vertices=500", "ratio=0.05", "bytes=65536" or "chunks=0-3". Errors (usage) name what is wrong:

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "protocol/mesh_id.h"
-
 namespace pmesh {
 namespace {
 
@@ -52,6 +50,8 @@ Result<Hello> parse_hello(ByteView payload) {
   }
   Hello hello;
   hello.version = reader.get<std::uint16_t>();
+  if (reader.failed()) return wrong_size("hello");
+  if (hello.version != kProtocolVersion) return hello;
   hello.max_frame = reader.get<std::uint32_t>();
   if (Status end = check_end(reader, "hello"); !end) return end.error();
   if (hello.max_frame < kMinFrameLimit) {
@@ -61,7 +61,7 @@ Result<Hello> parse_hello(ByteView payload) {
 }
 
 Bytes encode_open(std::uint16_t stream, const Open& open) {
-  assert(is_mesh_id(open.id));
+  assert(open.id.size() <= 0xFFFF);
   Bytes payload;
   ByteWriter writer(payload);
   writer.put(static_cast<std::uint16_t>(open.id.size()));
@@ -76,7 +76,6 @@ Result<Open> parse_open(ByteView payload) {
   open.id = as_text(reader.take(reader.get<std::uint16_t>()));
   if (reader.remaining() > 0) open.hash = get_hash(reader);
   if (Status end = check_end(reader, "open"); !end) return end.error();
-  if (!is_mesh_id(open.id)) return bad_input("open: not a mesh id");
   return open;
 }
 

@@ -89,7 +89,7 @@ enum class FailureCode : std::uint16_t {
   unsupported_version = 2,  ///< Stream 0: no common version.
   idle_timeout = 3,         ///< Stream 0: nothing was asked for too long.
   shutting_down = 4,        ///< Stream 0: the server goes down.
-  busy = 5,                 ///< Stream 0: too many connections.
+  busy = 5,                 ///< Stream 0: too many connections. Open: the mesh cannot be read now.
   not_found = 6,            ///< Open: no such mesh.
   hash_changed = 7,         ///< Open: the mesh no longer has that hash.
   too_many_streams = 8,     ///< Open: this server opens fewer streams on one connection.
@@ -105,7 +105,8 @@ struct Failure {
 };
 
 Bytes encode_hello(const Hello& hello);
-Bytes encode_open(std::uint16_t stream, const Open& open);  ///< Precondition: is_mesh_id(open.id).
+/// Precondition: an id of at most 65535 bytes.
+Bytes encode_open(std::uint16_t stream, const Open& open);
 Bytes encode_opened(std::uint16_t stream, const Opened& opened);
 Bytes encode_want(std::uint16_t stream, const Want& want);
 Bytes encode_data(std::uint16_t stream, const Data& data);
@@ -118,8 +119,10 @@ Bytes encode_empty(FrameType type, std::uint16_t stream);
 /// hands those to the socket itself. Precondition: kDataHeaderBytes + byte_count fit a frame.
 Bytes encode_data_header(std::uint16_t stream, std::uint64_t offset, std::size_t byte_count);
 
+/// Of a version other than kProtocolVersion only the version is read: what follows is not known.
 Result<Hello> parse_hello(ByteView payload);
-Result<Open> parse_open(ByteView payload);  ///< Also fails if the id is not one.
+/// Does not check the id: one that cannot be any mesh's is answered like one that is no mesh's.
+Result<Open> parse_open(ByteView payload);
 Result<Opened> parse_opened(ByteView payload);
 /// Fails with code usage if only the wish's text is wrong: that is answered, not punished.
 Result<Want> parse_want(ByteView payload);

@@ -1,15 +1,13 @@
 #include "protocol/routes.h"
 
-#include <array>
-#include <charconv>
 #include <vector>
 
+#include "core/base/parse_number.h"
+#include "protocol/letters.h"
 #include "protocol/mesh_id.h"
 
 namespace pmesh {
 namespace {
-
-Error usage(std::string message) { return {ErrorCode::usage, std::move(message)}; }
 
 /// -1 unless `c` is a hex digit.
 int hex_value(char c) {
@@ -22,7 +20,7 @@ int hex_value(char c) {
 /// Cuts "http://host" off an absolute target; an empty path is "/".
 std::string_view origin_form(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
-    if (!target.starts_with(scheme)) continue;
+    if (!begins_in_any_case(target, scheme)) continue;
     const std::size_t path = target.find('/', scheme.size());
     return path == std::string_view::npos ? std::string_view("/") : target.substr(path);
   }
@@ -37,7 +35,7 @@ Result<std::vector<std::string>> path_segments(std::string_view path) {
     path.remove_prefix(1);  // the '/'
     const std::string_view segment = path.substr(0, path.find('/'));
     auto decoded = percent_decoded(segment);
-    if (!decoded) return usage("the path has a broken percent escape");
+    if (!decoded) return usage_error("the path has a broken percent escape");
     segments.push_back(std::move(*decoded));
     path.remove_prefix(segment.size());
   }
@@ -49,17 +47,9 @@ std::optional<ContentHash> file_hash(std::string_view name) {
   return parse_hash(name.substr(0, name.size() - kMeshFileSuffix.size()));
 }
 
-std::optional<std::uint64_t> chunk_number(std::string_view digits) {
-  std::uint64_t number = 0;
-  const char* end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, number);
-  if (error != std::errc{} || stop != end) return {};
-  return number;
-}
-
 Result<Route> file_route(const std::string& id, const ContentHash& hash, std::string_view query) {
   const auto decoded = percent_decoded(query);
-  if (!decoded) return usage("the query has a broken percent escape");
+  if (!decoded) return usage_error("the query has a broken percent escape");
   auto wish = parse_wish(*decoded);
   if (!wish) return wish.error();
   return Route(MeshFileRoute{id, hash, *wish});
@@ -74,7 +64,7 @@ Result<Route> mesh_route(const std::vector<std::string>& segments, std::string_v
   }
   if (segments.size() == 4 && segments[2] == "c") {
     const auto hash = parse_hash(segments[1]);
-    const auto chunk = chunk_number(segments[3]);
+    const auto chunk = parse_whole<std::uint64_t>(segments[3]);
     if (hash && chunk) return Route(ChunkRoute{id, *hash, *chunk});
   }
   return Route(UnknownRoute{});
@@ -84,7 +74,7 @@ Result<Route> mesh_route(const std::vector<std::string>& segments, std::string_v
 
 Result<Route> parse_target(std::string_view target) {
   target = origin_form(target);
-  if (!target.starts_with('/')) return usage("the request target is not a path");
+  if (!target.starts_with('/')) return usage_error("the request target is not a path");
   const std::size_t question = target.find('?');
   const std::string_view path = target.substr(0, question);
   const std::string_view query =

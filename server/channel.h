@@ -5,12 +5,11 @@
 #include <chrono>
 #include <memory>
 #include <span>
-#include <string>
-#include <string_view>
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
+#include "core/base/bytes.h"
 #include "protocol/byte_range.h"
 #include "server/deadline.h"
 #include "server/mesh_file.h"
@@ -37,7 +36,7 @@ class Channel {
 
   /// Sends all of it; false if that failed. `more_follows` holds a last, small packet back until
   /// the next call (MSG_MORE).
-  boost::asio::awaitable<bool> send(std::string_view bytes, bool more_follows = false);
+  boost::asio::awaitable<bool> send(ByteView bytes, bool more_follows = false);
 
   /// Sends these bytes of the file; false if that failed or the file is no longer intact. Then the
   /// peer has been sent too little, and the connection must be cut.

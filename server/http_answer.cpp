@@ -48,6 +48,14 @@ HttpAnswer preflight() {
 
 HttpAnswer not_found(std::string_view what) { return error_answer(404, what); }
 
+/// The answer if `found` is not a mesh.
+HttpAnswer no_mesh(const Result<MeshPtr>& found, std::string_view not_found_text) {
+  if (found) return not_found(not_found_text);
+  HttpAnswer answer = error_answer(503, "the mesh cannot be read now");
+  answer.fields.add("Retry-After", "1");
+  return answer;
+}
+
 /// The entity tag without a leading "W/": If-None-Match compares weakly.
 std::string_view opaque_tag(std::string_view tag) {
   if (tag.starts_with("W/")) tag.remove_prefix(2);
@@ -153,8 +161,9 @@ struct Responder {
   }
 
   HttpAnswer operator()(const MeshInfoRoute& route) const {
-    const MeshPtr mesh = store.find(route.id);
-    if (!mesh) return not_found("no such mesh");
+    const auto found = store.find(route.id);
+    if (!found || !*found) return no_mesh(found, "no such mesh");
+    const MeshPtr& mesh = *found;
     const std::string etag = quoted(to_hex(mesh->hash()) + "-info");
     HttpAnswer answer = json_answer("no-cache", mesh_info_json({mesh->id(), &mesh->index()}));
     answer.fields.add("ETag", etag);
@@ -163,8 +172,9 @@ struct Responder {
   }
 
   HttpAnswer operator()(const MeshFileRoute& route) const {
-    const MeshPtr mesh = store.find(route.id, route.hash);
-    if (!mesh) return not_found("no such mesh, or not with this hash");
+    const auto found = store.find(route.id, route.hash);
+    if (!found || !*found) return no_mesh(found, "no such mesh, or not with this hash");
+    const MeshPtr& mesh = *found;
     const auto level = resolve(route.wish, mesh->index());
     if (!level) return error_answer(400, level.error().message);
 
@@ -182,8 +192,9 @@ struct Responder {
 
   /// Never a range: the route is for caches that refuse 206.
   HttpAnswer operator()(const ChunkRoute& route) const {
-    const MeshPtr mesh = store.find(route.id, route.hash);
-    if (!mesh) return not_found("no such mesh, or not with this hash");
+    const auto found = store.find(route.id, route.hash);
+    if (!found || !*found) return no_mesh(found, "no such mesh, or not with this hash");
+    const MeshPtr& mesh = *found;
     const auto& chunks = mesh->index().chunks;
     if (route.chunk >= chunks.size()) return not_found("no such chunk");
     const ChunkRow& row = chunks[static_cast<std::size_t>(route.chunk)];

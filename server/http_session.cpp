@@ -152,7 +152,7 @@ asio::awaitable<bool> HttpSession::send(const HttpAnswer& answer, bool keep_aliv
   const bool has_body = answer.may_have_body() && !answer.head_only && answer.body_bytes() > 0;
   if (has_body && !answer.mesh) head += answer.text;
   const bool file_follows = has_body && answer.mesh;
-  bool sent = co_await channel_.send(head, file_follows);
+  bool sent = co_await channel_.send(as_bytes(head), file_follows);
   if (sent && file_follows) {
     sent = co_await channel_.send_file(*answer.mesh, answer.span);
   }

@@ -1,16 +1,16 @@
 #include "server/listener.h"
 
-#include <charconv>
 #include <sstream>
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
+
+#include "core/base/parse_number.h"
 
 namespace pmesh {
 
@@ -30,13 +30,19 @@ Result<tcp::endpoint> parse_endpoint(const std::string& text) {
   if (colon == std::string::npos) return wrong;
   std::string host = text.substr(0, colon);
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  std::uint16_t port = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, bad_port] = std::from_chars(text.data() + colon + 1, end, port);
+  const auto port = parse_whole<std::uint16_t>(std::string_view(text).substr(colon + 1));
   error_code bad_host;
   const auto address = asio::ip::make_address(host, bad_host);
-  if (bad_host || bad_port != std::errc{} || stop != end) return wrong;
-  return tcp::endpoint(address, port);
+  if (bad_host || !port) return wrong;
+  return tcp::endpoint(address, *port);
+}
+
+Error listen_error(const std::string& address, const error_code& error) {
+  const bool exhausted = error == asio::error::no_descriptors || error == asio::error::no_memory ||
+                         error == boost::system::errc::too_many_files_open_in_system ||
+                         error == asio::error::no_buffer_space;
+  return {exhausted ? ErrorCode::out_of_resources : ErrorCode::runtime,
+          address + ": cannot listen: " + error.message()};
 }
 
 }  // namespace
@@ -56,7 +62,7 @@ Result<std::shared_ptr<Listener>> Listener::bind(asio::io_context& context,
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(*endpoint, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) return runtime_error(address + ": cannot listen: " + error.message());
+  if (error) return listen_error(address, error);
   return listener;
 }
 
@@ -80,7 +86,9 @@ void Listener::start() {
   asio::co_spawn(
       acceptor_.get_executor(),
       [self = shared_from_this()]() -> asio::awaitable<void> { co_await self->accept_all(); },
-      asio::detached);
+      [](const std::exception_ptr& exception) {
+        if (exception) log_exception("accepting connections", exception);
+      });
 }
 
 void Listener::stop() {
@@ -106,11 +114,16 @@ asio::awaitable<void> Listener::accept_all() {
   }
 }
 
+/// Starts the connection's session; without memory for one the connection is closed.
 void Listener::take(tcp::socket socket) {
-  if (!registry_.full()) {
-    registry_.start(make_session_(std::move(socket)));
-  } else if (!refusals_.full()) {
-    refusals_.start(make_refusal_(std::move(socket)));
+  try {
+    if (!registry_.full()) {
+      registry_.start(make_session_(std::move(socket)));
+    } else if (!refusals_.full()) {
+      refusals_.start(make_refusal_(std::move(socket)));
+    }
+  } catch (...) {
+    log_exception("starting a session", std::current_exception());
   }
 }
 

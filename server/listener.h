@@ -19,7 +19,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   using MakeSession = std::function<std::shared_ptr<Session>(boost::asio::ip::tcp::socket)>;
 
   /// Binds to "ADDRESS:PORT" ("[::1]:8080" for IPv6). Fails (usage) if that is not an address,
-  /// (runtime) if it cannot be bound. `make_session` makes the session of a connection,
+  /// (runtime) if it cannot be bound, (out_of_resources) if there are no descriptors left for it.
+  /// `make_session` makes the session of a connection,
   /// `make_refusal` that of one beyond the registry's limit, which should be short.
   static Result<std::shared_ptr<Listener>> bind(boost::asio::io_context& context,
                                                 const std::string& address,

@@ -1,5 +1,7 @@
 #include "server/mesh_file.h"
 
+#include "core/pm/digest.h"
+
 namespace pmesh {
 namespace {
 
@@ -38,6 +40,23 @@ Result<MeshPtr> MeshFile::open(std::string id, const std::string& path) {
   auto mesh = std::make_shared<const MeshFile>(std::move(id), std::move(*file), *stamp);
   if (!mesh->intact()) return runtime_error(path + ": changed while it was opened");
   return mesh;
+}
+
+Status MeshFile::check_sections() const {
+  const auto check = [&](std::uint64_t begin, std::uint64_t end, const SectionDigest& digest,
+                         const std::string& name) -> Status {
+    const Result<Bytes> section = file_.read(begin, end);
+    if (!section) return section.error();
+    if (digest_section(*section) == digest) return {};
+    return Error{ErrorCode::verification, file_.file().path() + ": " + name + ": altered"};
+  };
+  const FileHeader& header = index().header;
+  Status checked = check(index().prologue_bytes, index().base_end(), header.base_digest, "base");
+  for (std::size_t c = 0; checked && c < index().chunks.size(); ++c) {
+    const ChunkRow& row = index().chunks[c];
+    checked = check(row.offset, row.end(), row.digest, "chunk " + std::to_string(c));
+  }
+  return checked;
 }
 
 bool MeshFile::intact() const { return stamp_of_descriptor(descriptor()) == stamp_; }

@@ -43,6 +43,10 @@ class MeshFile {
   int descriptor() const { return file_.file().descriptor(); }
   const FileStamp& stamp() const { return stamp_; }
 
+  /// Reads base and chunks and checks their digests: what a file needs that was written to in
+  /// place, as its prologue and hash may have stayed what they were.
+  Status check_sections() const;
+
   /// False once the open file was written to or truncated: its bytes are no longer what the hash
   /// promises. A file replaced by rename stays intact.
   bool intact() const;

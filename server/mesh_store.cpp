@@ -2,15 +2,47 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include "protocol/mesh_id.h"
 
 namespace pmesh {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t half_of_descriptors() {
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return 512;
+  return static_cast<std::size_t>(limit.rlim_cur / 2);
+}
+
+/// Whether a later try may end otherwise, though the file stays as it is.
+bool may_pass(const Error& error) {
+  return error.code == ErrorCode::runtime || error.code == ErrorCode::out_of_resources;
+}
+
+/// Whether the file was written to, not replaced by another.
+bool changed_in_place(const FileStamp& before, const FileStamp& now) {
+  return before.device == now.device && before.inode == now.inode && before != now;
+}
+
+/// Why a file of the directory is not even looked into; empty if it is, or is of no interest.
+/// `path` is relative to the directory.
+std::string reason_to_pass_over(const fs::directory_entry& entry, const std::string& path) {
+  std::error_code ignored;
+  if (entry.is_directory(ignored)) {
+    return entry.is_symlink(ignored) ? "a link to a directory" : "";
+  }
+  if (!path.ends_with(kMeshFileSuffix)) return "";
+  if (!mesh_id_of_path(path)) return "its path gives no mesh id";
+  return entry.is_regular_file(ignored) ? "" : "not a regular file";
+}
+
+}  // namespace
 
 Result<std::unique_ptr<MeshStore>> MeshStore::open(const std::string& directory,
                                                    std::chrono::milliseconds rescan_interval) {
@@ -25,14 +57,16 @@ Result<std::unique_ptr<MeshStore>> MeshStore::open(const std::string& directory,
 }
 
 MeshStore::MeshStore(std::string root, std::chrono::milliseconds rescan_interval)
-    : root_(std::move(root)), rescan_interval_(rescan_interval) {}
+    : root_(std::move(root)),
+      rescan_interval_(rescan_interval),
+      most_meshes_(half_of_descriptors()) {}
 
-MeshPtr MeshStore::find(const std::string& id) {
-  if (!is_mesh_id(id)) return nullptr;
+Result<MeshPtr> MeshStore::find(const std::string& id) {
+  if (!is_mesh_id(id)) return MeshPtr();
   const auto stamp = stamp_of(path_of(id));
   if (!stamp) {
     forget(id);
-    return nullptr;
+    return MeshPtr();
   }
   {
     const std::shared_lock lock(mutex_);
@@ -42,15 +76,16 @@ MeshPtr MeshStore::find(const std::string& id) {
   return refresh(id, *stamp);
 }
 
-MeshPtr MeshStore::find(const std::string& id, const ContentHash& hash) {
-  MeshPtr current = find(id);
-  if (current && current->hash() == hash) return current;
+Result<MeshPtr> MeshStore::find(const std::string& id, const ContentHash& hash) {
+  const Result<MeshPtr> current = find(id);
+  if (current && *current && (*current)->hash() == hash) return current;
   const std::shared_lock lock(mutex_);
   for (const auto& retired : retired_) {
     MeshPtr mesh = retired.lock();
-    if (mesh && mesh->id() == id && mesh->hash() == hash) return mesh;
+    if (mesh && mesh->id() == id && mesh->hash() == hash && mesh->intact()) return mesh;
   }
-  return nullptr;
+  if (!current) return current.error();
+  return MeshPtr();
 }
 
 std::vector<MeshPtr> MeshStore::list() {
@@ -67,34 +102,77 @@ std::string MeshStore::path_of(const std::string& id) const {
   return root_ + "/" + path_of_mesh_id(id);
 }
 
-bool MeshStore::is_inside_root(const std::string& path) const {
+/// Ids are paths, so no directory may have two: only the last part of a path may be a link.
+Status MeshStore::check_place(const std::string& path) const {
   std::error_code error;
+  const fs::path directory = fs::path(path).parent_path();
+  if (fs::canonical(directory, error) != directory || error) {
+    return bad_input(path + ": a directory on its path is a link");
+  }
   const fs::path target = fs::canonical(path, error);
-  return !error && target.string().starts_with(root_ == "/" ? root_ : root_ + "/");
+  if (error || !target.string().starts_with(root_ == "/" ? root_ : root_ + "/")) {
+    return bad_input(path + ": a link out of the served directory");
+  }
+  return {};
 }
 
-Result<MeshPtr> MeshStore::load(const std::string& id) const {
+std::optional<MeshStore::Entry> MeshStore::entry_of(const std::string& id) const {
+  const std::shared_lock lock(mutex_);
+  const auto entry = entries_.find(id);
+  if (entry == entries_.end()) return {};
+  return entry->second;
+}
+
+/// Whether one more mesh may be open, or the file of `before` only takes its own place.
+bool MeshStore::has_room(const Entry& before) {
+  if (before.mesh) return true;
+  const std::shared_lock lock(mutex_);
+  if (mesh_count_ < most_meshes_) return true;
+  if (!said_full_.exchange(true)) {
+    spdlog::warn("{}: of its PM files {} are served, which takes half the descriptors; no more fit",
+                 root_, mesh_count_);
+  }
+  return false;
+}
+
+Result<MeshPtr> MeshStore::load(const std::string& id, const Entry& before) const {
   const std::string path = path_of(id);
-  if (!is_inside_root(path)) return bad_input(path + ": a link out of the served directory");
-  return MeshFile::open(id, path);
+  if (Status place = check_place(path); !place) return place.error();
+  const Result<MeshPtr> mesh = MeshFile::open(id, path);
+  if (!mesh || !changed_in_place(before.stamp, (*mesh)->stamp())) return mesh;
+  if (Status sections = (*mesh)->check_sections(); !sections) return sections.error();
+  if (!(*mesh)->intact()) return runtime_error(path + ": changed while it was checked");
+  return mesh;
 }
 
 /// Opens the file of `id`, which had `stamp`, and makes it the one that is found. A file that is
 /// not one to serve is remembered, so as not to be opened and logged again; one that could not be
-/// opened for a passing reason is not.
-MeshPtr MeshStore::refresh(const std::string& id, const FileStamp& stamp) {
-  const Result<MeshPtr> loaded = load(id);
-  if (!loaded) {
-    spdlog::warn("skipped {}", loaded.error().message);
-    const ErrorCode code = loaded.error().code;
-    if (code == ErrorCode::runtime || code == ErrorCode::out_of_resources) return nullptr;
+/// opened for a reason that may pass is tried again, and logged once.
+Result<MeshPtr> MeshStore::refresh(const std::string& id, const FileStamp& stamp) {
+  Entry entry = entry_of(id).value_or(Entry{});
+  if (!has_room(entry)) {
+    return Error{ErrorCode::out_of_resources, path_of(id) + ": too many meshes are open"};
+  }
+  const Result<MeshPtr> loaded = load(id, entry);
+  if (!loaded && entry.attempted != stamp) spdlog::warn("skipped {}", loaded.error().message);
+  if (!loaded && may_pass(loaded.error())) {
+    entry.attempted = stamp;
+    put(id, entry);
+    return loaded.error();
   }
   // A file replaced between stat and open has the stamp of its mesh.
-  Entry entry = loaded ? Entry{(*loaded)->stamp(), *loaded} : Entry{stamp, nullptr};
+  const MeshPtr mesh = loaded ? *loaded : nullptr;
+  put(id, {mesh ? mesh->stamp() : stamp, mesh, {}});
+  return mesh;
+}
+
+void MeshStore::put(const std::string& id, Entry entry) {
   const std::unique_lock lock(mutex_);
-  std::swap(entries_[id], entry);
-  retire(entry.mesh);
-  return loaded ? *loaded : nullptr;
+  Entry& place = entries_[id];
+  if (entry.mesh) ++mesh_count_;
+  std::swap(place, entry);
+  if (entry.mesh) --mesh_count_;
+  if (entry.mesh != place.mesh) retire(entry.mesh);
 }
 
 void MeshStore::forget(const std::string& id) {
@@ -105,6 +183,7 @@ void MeshStore::forget(const std::string& id) {
   const std::unique_lock lock(mutex_);
   const auto entry = entries_.find(id);
   if (entry == entries_.end()) return;
+  if (entry->second.mesh) --mesh_count_;
   retire(entry->second.mesh);
   entries_.erase(entry);
 }
@@ -121,29 +200,39 @@ void MeshStore::rescan() {
   if (!scanning.owns_lock() || now < next_rescan_) return;
   next_rescan_ = now + rescan_interval_;
 
-  const std::vector<std::string> found = ids_on_disk();
-  std::set<std::string> gone;
-  {
+  std::vector<std::string> ids = scan();
+  {  // A scan may end early: what was known and did not turn up is forgotten only if it is gone.
     const std::shared_lock lock(mutex_);
-    for (const auto& [id, entry] : entries_) gone.insert(id);
+    for (const auto& [id, entry] : entries_) ids.push_back(id);
   }
-  for (const std::string& id : found) {
-    gone.erase(id);
-    find(id);
-  }
-  for (const std::string& id : gone) forget(id);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  for (const std::string& id : ids) (void)find(id);
 }
 
-std::vector<std::string> MeshStore::ids_on_disk() const {
+/// The ids of the files below the directory. Logs what it passes over, unless the last scan did.
+std::vector<std::string> MeshStore::scan() {
   std::vector<std::string> ids;
+  std::map<std::string, std::string> left_out;
   std::error_code error;
   fs::recursive_directory_iterator entry(root_, fs::directory_options::skip_permission_denied,
                                          error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    const auto id = mesh_id_of_path(entry->path().lexically_relative(root_).generic_string());
-    if (id) ids.push_back(*id);
+    const std::string path = entry->path().lexically_relative(root_).generic_string();
+    if (std::string why = reason_to_pass_over(*entry, path); !why.empty()) {
+      left_out.emplace(entry->path().string(), std::move(why));
+    } else if (auto id = mesh_id_of_path(path)) {
+      ids.push_back(std::move(*id));
+    }
   }
-  if (error) spdlog::warn("scan of {} ended early: {}", root_, error.message());
+  for (const auto& [path, why] : left_out) {
+    if (!left_out_.contains(path)) spdlog::warn("skipped {}: {}", path, why);
+  }
+  if (error) {
+    spdlog::warn("scan of {} ended early: {}", root_, error.message());
+    left_out.merge(left_out_);
+  }
+  left_out_ = std::move(left_out);
   return ids;
 }
 

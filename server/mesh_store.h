@@ -1,14 +1,20 @@
 // The PM files under one directory, found by id and hash, kept up to date with the directory.
 //
-// A file counts if its path gives a mesh id (protocol/mesh_id.h), it is regular, does not lie
-// outside the directory by way of a symbolic link, and is a complete PM file. Others are left out,
-// with a line in the log once for each state of the file.
+// A file counts if its path gives a mesh id (protocol/mesh_id.h), none of the directories on the
+// path is a symbolic link, it is regular (or a link to a regular file under the directory), and is
+// a complete PM file. Others are left out, with a line in the log once for each state of the file.
+//
+// A file is opened by its header and index alone: that its base and chunks are what the index
+// promises is the writer's word (`pmesh verify` checks it). A file that was written to in place
+// while it was served gives that word no more: its base and chunks are read and checked too.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <string>
 #include <vector>
@@ -24,47 +30,58 @@ class MeshStore {
  public:
   static constexpr std::chrono::milliseconds kRescanInterval{1000};
 
-  /// Opens every PM file under `directory`. Fails (usage) if it is no directory.
+  /// Opens every PM file under `directory`, up to half the descriptors that the process may have
+  /// (RLIMIT_NOFILE): the others are for connections. Fails (usage) if it is no directory.
   static Result<std::unique_ptr<MeshStore>> open(
       const std::string& directory, std::chrono::milliseconds rescan_interval = kRescanInterval);
 
-  /// The mesh that stands under this id in the directory now; null if none does.
-  MeshPtr find(const std::string& id);
+  /// The mesh that stands under this id in the directory now; null if none does. Fails (runtime,
+  /// out_of_resources) if a file stands there that cannot be opened now: a later try may succeed.
+  Result<MeshPtr> find(const std::string& id);
 
   /// The same with this hash: the mesh that stands there now, or one replaced since that a
   /// transfer still holds.
-  MeshPtr find(const std::string& id, const ContentHash& hash);
+  Result<MeshPtr> find(const std::string& id, const ContentHash& hash);
 
   /// All meshes by id. New and removed files show up after at most the rescan interval.
   std::vector<MeshPtr> list();
 
  private:
-  /// A file of the directory; the mesh is null if the file, as stamped, is not one to serve.
+  /// What is known of the file of an id.
   struct Entry {
-    FileStamp stamp;
-    MeshPtr mesh;
+    FileStamp stamp;      // of the file when it was last judged; none if it never was
+    MeshPtr mesh;         // null if the file, as stamped, is not one to serve
+    FileStamp attempted;  // of the file when last it could not be opened, which is in the log
   };
 
   MeshStore(std::string root, std::chrono::milliseconds rescan_interval);
 
   std::string path_of(const std::string& id) const;
-  bool is_inside_root(const std::string& path) const;
-  Result<MeshPtr> load(const std::string& id) const;
-  MeshPtr refresh(const std::string& id, const FileStamp& stamp);
+  Status check_place(const std::string& path) const;
+  std::optional<Entry> entry_of(const std::string& id) const;
+  bool has_room(const Entry& before);
+  Result<MeshPtr> load(const std::string& id, const Entry& before) const;
+  Result<MeshPtr> refresh(const std::string& id, const FileStamp& stamp);
+  void put(const std::string& id, Entry entry);
   void forget(const std::string& id);
   void retire(const MeshPtr& mesh);
   void rescan();
-  std::vector<std::string> ids_on_disk() const;
+  std::vector<std::string> scan();
 
   const std::string root_;  // canonical
   const std::chrono::milliseconds rescan_interval_;
+  const std::size_t most_meshes_;
 
-  mutable std::shared_mutex mutex_;  // guards the two below
+  mutable std::shared_mutex mutex_;  // guards the three below
   std::map<std::string, Entry> entries_;
+  std::size_t mesh_count_ = 0;  // of entries with a mesh
   std::vector<std::weak_ptr<const MeshFile>> retired_;
 
-  std::mutex rescan_mutex_;  // held while scanning; guards the one below
+  std::atomic<bool> said_full_ = false;
+
+  std::mutex rescan_mutex_;  // held while scanning; guards the two below
   std::chrono::steady_clock::time_point next_rescan_{};
+  std::map<std::string, std::string> left_out_;  // paths that the last scan passed over, and why
 };
 
 }  // namespace pmesh

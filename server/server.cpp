@@ -10,6 +10,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
+#include <boost/system/system_error.hpp>
 #include <spdlog/spdlog.h>
 
 #include "protocol/messages.h"
@@ -140,7 +141,7 @@ class Server::Impl {
 Server::Server(const ServerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Server::~Server() = default;
 
-Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
+Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) try {
   std::signal(SIGPIPE, SIG_IGN);
   std::unique_ptr<Server> server(new Server(options));
   if (Status opened = server->impl_->open_store(); !opened) return opened.error();
@@ -155,6 +156,8 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
     server->tcp_address_ = *address;
   }
   return server;
+} catch (const boost::system::system_error& error) {  // Asio lacks descriptors of its own
+  return Error{ErrorCode::out_of_resources, std::string("cannot start: ") + error.what()};
 }
 
 void Server::handle_signals() { impl_->handle_signals(); }

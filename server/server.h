@@ -18,7 +18,8 @@ namespace pmesh {
 class Server {
  public:
   /// Opens the meshes and binds the addresses. Fails (usage) on a directory or address that makes
-  /// no sense, (runtime) on an address that cannot be bound. The process ignores SIGPIPE from now
+  /// no sense, (runtime) on an address that cannot be bound, (out_of_resources) if there are not
+  /// enough descriptors. The process ignores SIGPIPE from now
   /// on: sendfile(2) cannot be told not to raise it.
   static Result<std::unique_ptr<Server>> open(const ServerOptions& options);
   ~Server();

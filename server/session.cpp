@@ -1,7 +1,5 @@
 #include "server/session.h"
 
-#include <exception>
-
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 #include <spdlog/spdlog.h>
@@ -10,25 +8,21 @@ namespace pmesh {
 
 namespace asio = boost::asio;
 
-namespace {
-
-void log_exception(const std::exception_ptr& exception) {
+void log_exception(std::string_view what, const std::exception_ptr& exception) {
   try {
     std::rethrow_exception(exception);
   } catch (const std::exception& error) {
-    spdlog::error("a session failed: {}", error.what());
+    spdlog::error("{} failed: {}", what, error.what());
   } catch (...) {
-    spdlog::error("a session failed");
+    spdlog::error("{} failed", what);
   }
 }
-
-}  // namespace
 
 void Session::start(std::function<void()> ended) {
   asio::co_spawn(
       channel_.executor(), run(),
       [self = shared_from_this(), ended = std::move(ended)](const std::exception_ptr& exception) {
-        if (exception) log_exception(exception);
+        if (exception) log_exception("a session", exception);
         self->channel_.close();
         ended();
       });
@@ -53,7 +47,12 @@ void SessionRegistry::start(const std::shared_ptr<Session>& session) {
     draining = emptied_ != nullptr;
   }
   ++count_;
-  session->start([this, session] { remove(session); });
+  try {
+    session->start([this, session] { remove(session); });
+  } catch (...) {
+    remove(session);
+    throw;
+  }
   if (draining) session->drain();
 }
 

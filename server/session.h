@@ -2,10 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
+#include <string_view>
 
 #include <boost/asio/awaitable.hpp>
 
@@ -15,6 +17,9 @@
 
 namespace pmesh {
 
+/// Logs what ended a coroutine: "`what` failed: ...".
+void log_exception(std::string_view what, const std::exception_ptr& exception);
+
 /// One connection from accept to close. It lives as long as its coroutine runs.
 class Session : public std::enable_shared_from_this<Session> {
  public:
@@ -22,7 +27,8 @@ class Session : public std::enable_shared_from_this<Session> {
       : channel_(std::move(socket), limits), limits_(limits) {}
   virtual ~Session() = default;
 
-  /// Runs the session to its end; `ended` is called then, on any thread.
+  /// Runs the session to its end; `ended` is called then, on any thread. Throws if memory is short;
+  /// then `ended` is not called.
   void start(std::function<void()> ended);
 
   /// Any thread: finish what is under way, begin nothing new.
@@ -56,7 +62,7 @@ class SessionRegistry {
   std::size_t count() const { return count_.load(); }
 
   /// Registers the session and starts it; it is let go when it ends. While draining it is drained
-  /// at once.
+  /// at once. Throws if memory is short; then it is not registered.
   void start(const std::shared_ptr<Session>& session);
 
   /// Drains all sessions; `emptied` is called, on any thread, when the last has ended, at once if

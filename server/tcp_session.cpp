@@ -4,7 +4,6 @@
 #include <array>
 
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 
 namespace pmesh {
 
@@ -15,10 +14,6 @@ namespace {
 /// Of the file, in a data frame: few enough that a pause or cancel works soon.
 constexpr std::uint64_t kDataBytes = 128 * 1024;
 constexpr std::size_t kReceiveBytes = 2048;
-
-std::string_view as_text(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 Opened opened_from(const MeshFile& mesh) {
   const FileHeader& header = mesh.index().header;
@@ -33,12 +28,22 @@ Opened opened_from(const MeshFile& mesh) {
 
 }  // namespace
 
+TcpSession::TcpSession(asio::ip::tcp::socket socket, const SessionLimits& limits, MeshStore& store)
+    : Session(std::move(socket), limits),
+      store_(store),
+      work_(channel_.executor()),
+      room_(channel_.executor()) {
+  enqueue(encode_hello({.max_frame = kMinFrameLimit}));  // ahead of whatever a drain may say
+}
+
 asio::awaitable<void> TcpSession::run() {
-  enqueue(encode_hello({.max_frame = kMinFrameLimit}));
-  const auto self = shared_from_this();
-  asio::co_spawn(
-      channel_.executor(), [this, self]() -> asio::awaitable<void> { co_await read_frames(); },
-      asio::detached);
+  const auto reader_ended = [this, self = shared_from_this()](const std::exception_ptr& exception) {
+    if (exception) log_exception("a session", exception);
+    ending_ = true;
+    reading_ = false;
+    work_.notify();
+  };
+  asio::co_spawn(channel_.executor(), read_frames(), reader_ended);
   const bool sent_all = co_await write_frames();
   if (!sent_all) channel_.reset();
   writing_ = false;
@@ -70,8 +75,6 @@ asio::awaitable<void> TcpSession::read_frames() {
       ending_ = true;
     }
   }
-  reading_ = false;
-  work_.notify();
 }
 
 /// Acts on every whole frame; waits while too many answers are not sent yet.
@@ -143,21 +146,30 @@ void TcpSession::take_open(const Frame& frame) {
   }
   if (stream_) end_transfer(*stream_, "the stream was opened again");
   stream_.reset();
-  MeshPtr mesh = open->hash ? store_.find(open->id, *open->hash) : store_.find(open->id);
-  if (mesh) {
-    enqueue(encode_opened(frame.stream, opened_from(*mesh)));
-    stream_ = Stream{frame.stream, std::move(mesh), {}};
-  } else if (open->hash && store_.find(open->id)) {
-    fail(frame.stream, FailureCode::hash_changed, "the mesh has another hash now");
+  open_mesh(frame.stream, *open);
+}
+
+void TcpSession::open_mesh(std::uint16_t stream, const Open& open) {
+  const auto found = open.hash ? store_.find(open.id, *open.hash) : store_.find(open.id);
+  if (!found) return fail(stream, FailureCode::busy, "the mesh cannot be read now");
+  if (const MeshPtr& mesh = *found) {
+    enqueue(encode_opened(stream, opened_from(*mesh)));
+    stream_ = Stream{stream, mesh, {}};
+    return;
+  }
+  const auto current = store_.find(open.id);
+  if (open.hash && current && *current) {
+    fail(stream, FailureCode::hash_changed, "the mesh has another hash now");
   } else {
-    fail(frame.stream, FailureCode::not_found, "no such mesh");
+    fail(stream, FailureCode::not_found, "no such mesh");
   }
 }
 
 void TcpSession::take_want(const Frame& frame) {
   const auto want = parse_want(frame.payload);
-  if (!want && want.error().code != ErrorCode::usage) {
-    end_with(FailureCode::protocol_error, want.error().message);
+  const bool bad_message = !want && want.error().code != ErrorCode::usage;
+  if (bad_message || frame.stream == kConnectionStream) {
+    end_with(FailureCode::protocol_error, bad_message ? want.error().message : "want: on stream 0");
     return;
   }
   Stream* stream = find_stream(frame.stream);
@@ -224,7 +236,7 @@ asio::awaitable<bool> TcpSession::send_next_answer() {
   answers_.pop_front();
   answer_bytes_ -= frame.size();
   room_.notify();
-  co_return co_await channel_.send(as_text(frame));
+  co_return co_await channel_.send(frame);
 }
 
 /// Sends one data frame of the transfer; its done follows the last.
@@ -243,7 +255,7 @@ asio::awaitable<bool> TcpSession::send_next_data() {
   // From here on the reader may end this transfer, and begin another.
   const MeshPtr mesh = stream_->mesh;
   const Bytes header = encode_data_header(stream_->id, begin, count);
-  const bool header_sent = co_await channel_.send(as_text(header), true);
+  const bool header_sent = co_await channel_.send(header, true);
   if (!header_sent) co_return false;
   co_return co_await channel_.send_file(*mesh, {begin, begin + count});
 }

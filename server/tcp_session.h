@@ -15,11 +15,7 @@ namespace pmesh {
 
 class TcpSession final : public Session {
  public:
-  TcpSession(boost::asio::ip::tcp::socket socket, const SessionLimits& limits, MeshStore& store)
-      : Session(std::move(socket), limits),
-        store_(store),
-        work_(channel_.executor()),
-        room_(channel_.executor()) {}
+  TcpSession(boost::asio::ip::tcp::socket socket, const SessionLimits& limits, MeshStore& store);
 
  protected:
   boost::asio::awaitable<void> run() override;
@@ -44,6 +40,7 @@ class TcpSession final : public Session {
   void take_frame(const Frame& frame);
   void take_hello(const Frame& frame);
   void take_open(const Frame& frame);
+  void open_mesh(std::uint16_t stream, const Open& open);
   void take_want(const Frame& frame);
   void take_control(const Frame& frame);
   Stream* find_stream(std::uint16_t id);

@@ -14,8 +14,8 @@ namespace pmesh {
 enum class ErrorCode : std::uint8_t {
   runtime,           ///< The outside world failed: a file, a socket, a peer.
   usage,             ///< The caller asked for something that makes no sense.
-  bad_input,         ///< A mesh or PM file (or message) that breaks its format.
-  verification,      ///< A PM file whose claims do not hold, or that is incomplete.
+  bad_input,         ///< A mesh file or message that breaks its format; what is no PM file.
+  verification,      ///< A PM file that is damaged (its claims do not hold) or incomplete.
   out_of_resources,  ///< A limit or the machine's memory or disk is exceeded.
 };
 
@@ -25,6 +25,7 @@ struct Error {
 };
 
 inline Error bad_input(std::string message) { return {ErrorCode::bad_input, std::move(message)}; }
+inline Error damaged(std::string message) { return {ErrorCode::verification, std::move(message)}; }
 inline Error runtime_error(std::string message) { return {ErrorCode::runtime, std::move(message)}; }
 
 /// `error` with "where: " put before its message.

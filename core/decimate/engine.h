@@ -21,9 +21,6 @@
 
 namespace pmesh {
 
-/// One over the diagonal of the bounding box of `positions`; 1 if that is not a number.
-double unit_scale(std::span<const Vec3d> positions);
-
 template <Metric M>
 class Engine {
   static_assert(M::kPlacement == Placement::subset, "the collapse log has no relocations yet");
@@ -71,6 +68,7 @@ class Engine {
   void run_relaxed() {
     const std::uint32_t faces = mesh_.live_faces();
     may_fold_over_ = true;
+    popped_key_ = 0;
     evaluate_all();
     collapse_all();
     if (mesh_.live_faces() < faces) relaxed_at_faces_ = faces;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/box.h"
+
 namespace pmesh {
 namespace {
 
@@ -38,6 +40,16 @@ void repeat(OneRing::Row& row, std::uint32_t period) {
 }
 
 }  // namespace
+
+double unit_scale(std::span<const Vec3d> positions) {
+  if (positions.empty()) return 1;
+  const Box<double> box = bounding_box(positions);
+  const double side = box.longest_side();
+  const Vec3d diagonal = box.high - box.low;  // in units of the side it can be squared
+  const Vec3d relative{diagonal.x / side, diagonal.y / side, diagonal.z / side};
+  const double scale = 1 / (side * length(relative));
+  return std::isfinite(scale) && scale > 0 ? scale : 1;
+}
 
 bool gather_neighbours(const HalfEdgeMesh& mesh, VertexId v, OneRing& ring) {
   const HalfEdgeId first = mesh.outgoing(v);

@@ -13,11 +13,14 @@ namespace pmesh {
 /// four) has no usable normal: it counts as a face without area.
 inline constexpr double kZeroAreaRatio = 1e-10;
 
+/// One over the diagonal of the bounding box of `positions`; 1 if that is not a positive number.
+double unit_scale(std::span<const Vec3d> positions);
+
 /// Fills ring.centre, neighbours, faces, border and ids. False if `v` has more than
 /// OneRing::kMaxFaces faces; the walk stops there.
 bool gather_neighbours(const HalfEdgeMesh& mesh, VertexId v, OneRing& ring);
 
-/// Fills in the geometry, after gather_neighbours. `scale` is one over the mesh's size.
+/// Fills in the geometry, after gather_neighbours. `scale` is the whole mesh's unit_scale.
 void gather_geometry(std::span<const Vec3d> positions, double scale, const BorderLoops& borders,
                      OneRing& ring);
 

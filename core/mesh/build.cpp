@@ -1,4 +1,4 @@
-// HalfEdgeMesh::build and validate: from triangles to twins, and the check of every invariant.
+// HalfEdgeMesh::build: from triangles to twins and anchors.
 #include <string>
 
 #include "core/mesh/edge_groups.h"
@@ -80,58 +80,6 @@ Status HalfEdgeMesh::anchor_vertices() {
     } while (h.valid() && h != first);
     if (fan != corners_of[v]) {
       return bad_input("vertex " + to_string(v) + " has more than one fan of faces");
-    }
-  }
-  return {};
-}
-
-Status HalfEdgeMesh::validate() const {
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> compact(vertex_slots(), kNoIndex);
-  std::uint32_t vertices = 0;
-  for (std::uint32_t v = 0; v < vertex_slots(); ++v) {
-    if (is_live(VertexId(v))) compact[v] = vertices++;
-  }
-  std::vector<std::uint32_t> slots;
-  for (std::uint32_t f = 0; f < face_slots(); ++f) {
-    if (!is_live(FaceId(f))) continue;
-    Triangle t;
-    for (int k = 0; k < 3; ++k) {
-      const VertexId v = origins_[3 * f + k];
-      if (v.value >= vertex_slots() || !is_live(v)) {
-        return bad_input("face " + to_string(f) + " has a dead vertex");
-      }
-      t[k] = compact[v.value];
-    }
-    triangles.push_back(t);
-    slots.push_back(f);
-  }
-  if (vertices != live_vertices_ || triangles.size() != live_faces_) {
-    return bad_input("the live counts are wrong");
-  }
-  const Result<HalfEdgeMesh> rebuilt = build(triangles, vertices);
-  if (!rebuilt) return rebuilt.error();
-  for (std::size_t f = 0; f < slots.size(); ++f) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const HalfEdgeId twin_here = twins_[3 * slots[f] + k];
-      const HalfEdgeId twin_there =
-          rebuilt->twin(HalfEdgeId(static_cast<std::uint32_t>(3 * f) + k));
-      const HalfEdgeId expected =
-          twin_there.valid() ? HalfEdgeId(3 * slots[twin_there.value / 3] + twin_there.value % 3)
-                             : HalfEdgeId();
-      if (twin_here != expected) {
-        return bad_input("face " + to_string(slots[f]) + " has a wrong twin");
-      }
-    }
-  }
-  for (std::uint32_t v = 0; v < vertex_slots(); ++v) {
-    const HalfEdgeId h = outgoing_[v];
-    if (!h.valid()) continue;
-    if (h.value >= origins_.size() || origins_[h.value] != VertexId(v)) {
-      return bad_input("vertex " + to_string(v) + " has a wrong outgoing half-edge");
-    }
-    if (rebuilt->is_border(VertexId(compact[v])) != is_border(h)) {
-      return bad_input("border vertex " + to_string(v) + " is not anchored at its border");
     }
   }
   return {};

@@ -107,70 +107,88 @@ Status HalfEdgeMesh::check(const SplitSite& site) const {
   return {};
 }
 
+// The border of a moved fan, before it moves: its first face has kept -> left (inner_left), its
+// last has right -> kept (inner_right); outer_* are their twins. A fan without faces has the border
+// half-edge itself as its outer side.
+struct HalfEdgeMesh::MovedFan {
+  VertexId kept;
+  HalfEdgeId inner_left, outer_left;
+  HalfEdgeId inner_right, outer_right;
+};
+
+HalfEdgeMesh::MovedFan HalfEdgeMesh::move_fan(const SplitSite& site, VertexId added) {
+  MovedFan fan;
+  HalfEdgeId h = site.half_edge;
+  if (site.kind == SplitKind::border_last) {
+    fan.kept = target(h);
+    fan.outer_left = h;
+    for (std::uint32_t moved = 0; moved < site.moved_faces; ++moved) {
+      fan.inner_left = next(fan.outer_left);
+      fan.outer_left = twin(fan.inner_left);
+      origins_[fan.inner_left.value] = added;
+    }
+    return fan;
+  }
+  fan.kept = origin(h);
+  fan.outer_right = h;
+  if (site.kind == SplitKind::interior) {
+    fan.inner_left = h;
+    fan.outer_left = twin(h);
+  }
+  for (std::uint32_t moved = 0; moved < site.moved_faces; ++moved) {
+    fan.inner_right = prev(fan.outer_right);
+    origins_[fan.outer_right.value] = added;
+    fan.outer_right = twin(fan.inner_right);
+  }
+  return fan;
+}
+
+HalfEdgeId HalfEdgeMesh::append_left(const MovedFan& fan, VertexId added) {
+  const VertexId left = fan.inner_left.valid() ? target(fan.inner_left) : origin(fan.outer_left);
+  const HalfEdgeId added_to_kept(3 * append_face(added, fan.kept, left).value);
+  const HalfEdgeId kept_to_left = next(added_to_kept), left_to_added = prev(added_to_kept);
+  set_twins(kept_to_left, fan.outer_left);
+  set_twins(left_to_added, fan.inner_left);
+  if (!fan.inner_left.valid()) outgoing_[left.value] = left_to_added;
+  HalfEdgeId& anchor = outgoing_[fan.kept.value];
+  if (origin(anchor) == added) anchor = kept_to_left;
+  return added_to_kept;
+}
+
+HalfEdgeId HalfEdgeMesh::append_right(const MovedFan& fan, VertexId added) {
+  const VertexId right =
+      fan.inner_right.valid() ? origin(fan.inner_right) : target(fan.outer_right);
+  const HalfEdgeId added_to_right(3 * append_face(added, right, fan.kept).value);
+  const HalfEdgeId right_to_kept = next(added_to_right);
+  set_twins(added_to_right, fan.inner_right);
+  set_twins(right_to_kept, fan.outer_right);
+  if (!fan.outer_right.valid()) outgoing_[right.value] = right_to_kept;
+  return prev(added_to_right);  // kept -> added
+}
+
 VertexId HalfEdgeMesh::split(const SplitSite& site) {
-  const HalfEdgeId start = site.half_edge;
   const VertexId added(vertex_slots());
   outgoing_.emplace_back();
   ++live_vertices_;
-
-  // The half-edges around the moved fan, before it moves: its first face has `kept -> left`
-  // (inner_left), its last has `right -> kept` (inner_right); outer_* are their twins. A fan
-  // without faces has the border half-edge itself as its outer side.
-  HalfEdgeId inner_left, outer_left, inner_right, outer_right;
-  VertexId kept;
-  if (site.kind == SplitKind::border_last) {
-    kept = target(start);
-    outer_left = start;
-    HalfEdgeId h = next(start);
-    for (std::uint32_t moved = 0; moved < site.moved_faces; ++moved) {
-      inner_left = h;
-      outer_left = twin(h);
-      origins_[h.value] = added;
-      if (outer_left.valid()) h = next(outer_left);
+  const MovedFan fan = move_fan(site, added);
+  switch (site.kind) {
+    case SplitKind::interior: {
+      const HalfEdgeId added_to_kept = append_left(fan, added);
+      set_twins(added_to_kept, append_right(fan, added));
+      outgoing_[added.value] = fan.inner_left;
+      break;
     }
-  } else {
-    kept = origin(start);
-    outer_right = start;
-    HalfEdgeId h = start;
-    if (site.kind == SplitKind::interior) {
-      inner_left = start;
-      outer_left = twin(start);
+    case SplitKind::border_first: {
+      const HalfEdgeId kept_to_added = append_right(fan, added);
+      outgoing_[added.value] = site.moved_faces > 0 ? site.half_edge : next(kept_to_added);
+      outgoing_[fan.kept.value] = kept_to_added;
+      break;
     }
-    for (std::uint32_t moved = 0; moved < site.moved_faces; ++moved) {
-      inner_right = prev(h);
-      outer_right = twin(inner_right);
-      origins_[h.value] = added;
-      h = outer_right;
-    }
+    case SplitKind::border_last:
+      outgoing_[added.value] = append_left(fan, added);
+      break;
   }
-  HalfEdgeId& anchor = outgoing_[kept.value];
-
-  HalfEdgeId added_to_kept, kept_to_added;
-  if (site.kind != SplitKind::border_first) {  // L = (added, kept, left)
-    const VertexId left = inner_left.valid() ? target(inner_left) : origin(outer_left);
-    added_to_kept = HalfEdgeId(3 * append_face(added, kept, left).value);
-    const HalfEdgeId kept_to_left = next(added_to_kept), left_to_added = prev(added_to_kept);
-    set_twins(kept_to_left, outer_left);
-    set_twins(left_to_added, inner_left);
-    if (!inner_left.valid()) outgoing_[left.value] = left_to_added;
-    if (origin(anchor) == added) anchor = kept_to_left;
-    outgoing_[added.value] = site.kind == SplitKind::interior ? inner_left : added_to_kept;
-  }
-  if (site.kind != SplitKind::border_last) {  // R = (added, right, kept)
-    const VertexId right = inner_right.valid() ? origin(inner_right) : target(outer_right);
-    const HalfEdgeId added_to_right(3 * append_face(added, right, kept).value);
-    const HalfEdgeId right_to_kept = next(added_to_right);
-    kept_to_added = prev(added_to_right);
-    set_twins(added_to_right, inner_right);
-    set_twins(right_to_kept, outer_right);
-    if (!outer_right.valid()) outgoing_[right.value] = right_to_kept;
-    if (site.kind == SplitKind::border_first) {
-      outgoing_[added.value] = site.moved_faces > 0 ? start : added_to_right;
-      outgoing_[kept.value] = kept_to_added;
-    }
-  }
-  if (site.kind == SplitKind::interior) set_twins(added_to_kept, kept_to_added);
-  return kept;
+  return fan.kept;
 }
 
 void HalfEdgeMesh::undo_split(const SplitSite& site) {
@@ -199,21 +217,22 @@ SplitSite HalfEdgeMesh::find_site(const HalfEdgeCollapse& collapse) const {
     site.moved_faces = count(moved);
     return site;
   }
-  HalfEdgeId h = outgoing(collapse.kept);
+  std::uint32_t moved = 0;
   if (collapse.right.valid()) {
     site.kind = SplitKind::border_first;
-    site.half_edge = h;
-    std::uint32_t moved = 0;
-    for (; h.valid() && target(h) != collapse.right; h = rotate_ccw(h)) ++moved;
-    site.moved_faces = count(moved);
-    return site;
-  }
-  // border_last: faces from kept -> left to the end of the fan; none if left ends the fan.
-  site.kind = SplitKind::border_last;
-  std::uint32_t moved = 0;
-  for (; h.valid(); h = rotate_ccw(h)) {
-    if (moved > 0 || target(h) == collapse.left) ++moved;
-    site.half_edge = prev(h);
+    site.half_edge = outgoing(collapse.kept);
+    for (HalfEdgeId h = site.half_edge; h.valid() && target(h) != collapse.right;
+         h = rotate_ccw(h)) {
+      ++moved;
+    }
+  } else {  // the faces from kept -> left to the end of the fan; none if left ends the fan
+    site.kind = SplitKind::border_last;
+    site.half_edge = find_edge(collapse.kept, collapse.left);
+    HalfEdgeId h = origin(site.half_edge) == collapse.kept ? site.half_edge : HalfEdgeId();
+    for (; h.valid(); h = rotate_ccw(h)) {
+      ++moved;
+      site.half_edge = prev(h);
+    }
   }
   site.moved_faces = count(moved);
   return site;

@@ -74,6 +74,13 @@ struct SplitSite {
   friend bool operator==(const SplitSite&, const SplitSite&) = default;
 };
 
+/// The live part of a mesh, its vertices and faces numbered anew without gaps.
+struct LiveMesh {
+  std::vector<Triangle> triangles;
+  std::vector<VertexId> vertices;  ///< By new vertex: its id in the mesh.
+  std::vector<FaceId> faces;       ///< By new face: its id in the mesh.
+};
+
 class HalfEdgeMesh {
  public:
   HalfEdgeMesh() = default;
@@ -87,6 +94,9 @@ class HalfEdgeMesh {
 
   /// Checks every invariant. O(faces log faces). For tests, verify and debugging.
   Status validate() const;
+
+  /// The live vertices and faces, both in the order of their ids.
+  LiveMesh live() const;
 
   // Sizes. Ids run below the slot counts; a collapse leaves dead slots.
   std::uint32_t vertex_slots() const { return static_cast<std::uint32_t>(outgoing_.size()); }
@@ -146,8 +156,8 @@ class HalfEdgeMesh {
   void undo_split(const SplitSite& site);
 
   /// The site whose split undoes `collapse`, in this mesh, the state just after it.
-  /// The moved fan must have at most kMaxMovedFaces faces. O(valence of kept) on a border, else
-  /// O(moved faces + the smaller valence of kept and left).
+  /// The moved fan must have at most kMaxMovedFaces faces. O(moved faces + the smaller valence
+  /// of kept and left).
   SplitSite find_site(const HalfEdgeCollapse& collapse) const;
 
   void reserve(std::uint32_t vertices, std::uint32_t faces);
@@ -155,6 +165,10 @@ class HalfEdgeMesh {
  private:
   Status match_twins(std::span<const Triangle> triangles);
   Status anchor_vertices();  // each at its border half-edge, if it has one
+  struct MovedFan;
+  MovedFan move_fan(const SplitSite& site, VertexId added);
+  HalfEdgeId append_left(const MovedFan& fan, VertexId added);   // L; its added -> kept
+  HalfEdgeId append_right(const MovedFan& fan, VertexId added);  // R; its kept -> added
   void set_twins(HalfEdgeId a, HalfEdgeId b);
   void kill_face(FaceId f);
   FaceId append_face(VertexId a, VertexId b, VertexId c);

@@ -4,42 +4,32 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
+
+#include "core/base/box.h"
 
 namespace pmesh {
 namespace {
 
-struct Box {
-  Vec3d low, high;
-
-  double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
-  double largest_coordinate() const {
-    return std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x),
-                     std::abs(high.y), std::abs(high.z)});
-  }
-};
-
-Box bounding_box(const std::vector<Vec3d>& positions) {
-  Box box{positions.front(), positions.front()};
-  for (const Vec3d& p : positions) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-  }
-  return box;
+double largest_coordinate(const Box<double>& box) {
+  return std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
+                   std::abs(box.high.x), std::abs(box.high.y), std::abs(box.high.z)});
 }
 
 bool is_finite(Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-double median_edge_length(const IndexedMesh& mesh) {
+// In units of `side`, so that no mesh is too large or small for its edges to be squared.
+double median_edge_length(const IndexedMesh& mesh, double side) {
   std::vector<double> squared;
   squared.reserve(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
       const Vec3d edge = mesh.positions[t[(k + 1) % 3]] - mesh.positions[t[k]];
-      squared.push_back(dot(edge, edge));
+      const Vec3d relative{edge.x / side, edge.y / side, edge.z / side};
+      squared.push_back(dot(relative, relative));
     }
   }
-  if (squared.empty()) return 0;
   const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
   std::nth_element(squared.begin(), middle, squared.end());
   return std::sqrt(*middle);
@@ -61,12 +51,12 @@ Result<Lattice> make_lattice(const std::vector<Vec3d>& positions, int bits) {
   if (!std::all_of(positions.begin(), positions.end(), is_finite)) {
     return bad_input("a position is not finite");
   }
-  const Box box = bounding_box(positions);
+  const Box<double> box = bounding_box(std::span(positions));
   const double side = box.longest_side();
   if (!std::isfinite(side)) return bad_input("the bounding box is not finite");
   Lattice lattice{box.low, side / (std::ldexp(1.0, bits) - 1), static_cast<std::uint8_t>(bits)};
   if (side == 0) lattice.step = 1;
-  const double largest = box.largest_coordinate();
+  const double largest = largest_coordinate(box);
   const double resolution = largest - std::nextafter(largest, 0);
   if (side > 0 &&
       (lattice.step < resolution || lattice.step < std::numeric_limits<double>::min())) {
@@ -79,10 +69,12 @@ Result<Lattice> make_lattice(const std::vector<Vec3d>& positions, int bits) {
 int default_lattice_bits(const IndexedMesh& mesh) {
   constexpr int kFewest = 10, kMost = 20;
   constexpr double kStepsPerEdge = 24;
-  const double edge = median_edge_length(mesh);
-  const double side = mesh.positions.empty() ? 0 : bounding_box(mesh.positions).longest_side();
+  if (mesh.triangles.empty()) return kFewest;
+  const double side = bounding_box(std::span(mesh.positions)).longest_side();
+  if (!(side > 0)) return kFewest;
+  const double edge = median_edge_length(mesh, side);
   int bits = kFewest;
-  while (bits < kMost && side / (std::ldexp(1.0, bits) - 1) * kStepsPerEdge > edge) ++bits;
+  while (bits < kMost && kStepsPerEdge / (std::ldexp(1.0, bits) - 1) > edge) ++bits;
   return bits;
 }
 

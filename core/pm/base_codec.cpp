@@ -15,31 +15,24 @@ namespace {
 
 constexpr int kBestCompression = 0;  // Draco's "speed"
 
-// An attribute of `components` 32-bit integers a vertex, point i being vertex i.
-template <class T>
-int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType data_type,
-                  const std::vector<T>& values) {
-  draco::GeometryAttribute attribute;
-  constexpr auto kComponents = static_cast<std::int8_t>(sizeof(T) / sizeof(std::int32_t));
-  attribute.Init(type, nullptr, kComponents, data_type, false, sizeof(T), 0);
-  const auto count = static_cast<draco::AttributeValueIndex::ValueType>(values.size());
-  const int id = mesh.AddAttribute(attribute, true, count);
-  for (draco::AttributeValueIndex i(0); i < count; ++i) {
-    mesh.attribute(id)->SetAttributeValue(i, &values[i.value()]);
-  }
-  return id;
-}
-
-std::unique_ptr<draco::Mesh> to_draco(const LatticeMesh& base) {
+std::unique_ptr<draco::Mesh> to_draco(const std::vector<Vec3i>& positions,
+                                      const std::vector<Triangle>& triangles) {
   auto mesh = std::make_unique<draco::Mesh>();
-  mesh->set_num_points(static_cast<std::uint32_t>(base.positions.size()));
-  mesh->SetNumFaces(base.triangles.size());
-  for (std::uint32_t f = 0; f < base.triangles.size(); ++f) {
-    const auto [a, b, c] = base.triangles[f];
+  const auto vertex_count = static_cast<std::uint32_t>(positions.size());
+  mesh->set_num_points(vertex_count);
+  mesh->SetNumFaces(triangles.size());
+  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
+    const auto [a, b, c] = triangles[f];
     mesh->SetFace(draco::FaceIndex(f),
                   {draco::PointIndex(a), draco::PointIndex(b), draco::PointIndex(c)});
   }
-  add_attribute(*mesh, draco::GeometryAttribute::POSITION, draco::DT_INT32, base.positions);
+  draco::GeometryAttribute attribute;
+  attribute.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_INT32, false,
+                 sizeof(Vec3i), 0);
+  const int id = mesh->AddAttribute(attribute, true, vertex_count);
+  for (draco::AttributeValueIndex v(0); v < vertex_count; ++v) {
+    mesh->attribute(id)->SetAttributeValue(v, &positions[v.value()]);
+  }
   return mesh;
 }
 
@@ -62,29 +55,20 @@ Result<std::unique_ptr<draco::Mesh>> decode(ByteView bytes) {
   return std::move(decoded).value();
 }
 
-// The values of an integer attribute by point.
-template <class T>
-Result<std::vector<T>> values_of(const draco::Mesh& mesh, const draco::PointAttribute* attribute) {
-  constexpr int kComponents = sizeof(T) / sizeof(std::int32_t);
-  if (attribute == nullptr || attribute->num_components() != kComponents ||
-      (attribute->data_type() != draco::DT_INT32 && attribute->data_type() != draco::DT_UINT32)) {
-    return bad_input("Draco: not " + std::to_string(kComponents) + " 32-bit integers a vertex");
+Result<LatticeMesh> from_draco(const draco::Mesh& mesh) {
+  const draco::PointAttribute* const attribute =
+      mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  if (mesh.num_attributes() != 1 || attribute == nullptr || attribute->num_components() != 3 ||
+      attribute->data_type() != draco::DT_INT32) {
+    return bad_input("Draco: not one attribute of three 32-bit integers");
   }
-  std::vector<T> values(mesh.num_points());
+  LatticeMesh base;
+  base.positions.resize(mesh.num_points());
   for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
     const draco::AttributeValueIndex index = attribute->mapped_index(p);
     if (index.value() >= attribute->size()) return bad_input("Draco: a vertex has no position");
-    attribute->GetValue(index, &values[p.value()]);
+    attribute->GetValue(index, &base.positions[p.value()]);
   }
-  return values;
-}
-
-Result<LatticeMesh> from_draco(const draco::Mesh& mesh) {
-  auto positions =
-      values_of<Vec3i>(mesh, mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION));
-  if (!positions) return positions.error();
-  LatticeMesh base;
-  base.positions = std::move(*positions);
   base.triangles.reserve(mesh.num_faces());
   for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
     const draco::Mesh::Face& face = mesh.face(f);
@@ -99,63 +83,68 @@ Triangle normalised(Triangle t) {
   return t;
 }
 
-// Whether `decoded` is `base` with vertices renamed by decoded_vertex.
+std::vector<Triangle> sorted(std::vector<Triangle> triangles) {
+  for (Triangle& t : triangles) t = normalised(t);
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+// Whether `coded.decoded` is `base` with its vertices renamed by decoded_vertex.
 bool is_renaming(const LatticeMesh& base, const EncodedBase& coded) {
   const LatticeMesh& decoded = coded.decoded;
   if (decoded.positions.size() != base.positions.size() ||
       decoded.triangles.size() != base.triangles.size()) {
     return false;
   }
-  std::vector<Triangle> expected, found;
-  for (const auto [a, b, c] : base.triangles) {
-    expected.push_back(
-        normalised({coded.decoded_vertex[a], coded.decoded_vertex[b], coded.decoded_vertex[c]}));
-  }
-  for (const Triangle& t : decoded.triangles) found.push_back(normalised(t));
-  std::sort(expected.begin(), expected.end());
-  std::sort(found.begin(), found.end());
-  if (expected != found) return false;
   for (std::size_t v = 0; v < base.positions.size(); ++v) {
     if (decoded.positions[coded.decoded_vertex[v]] != base.positions[v]) return false;
   }
-  return true;
+  std::vector<Triangle> renamed = base.triangles;
+  for (Triangle& t : renamed) {
+    for (std::uint32_t& v : t) v = coded.decoded_vertex[v];
+  }
+  return sorted(std::move(renamed)) == sorted(decoded.triangles);
 }
 
-// Where Draco's decoder puts each vertex. Draco does not tell, so a second encoding carries every
-// vertex's index along as an attribute; the caller checks that both have the same order.
+// Decodes what was just encoded.
+Result<LatticeMesh> decode_own(const Bytes& bytes) {
+  const auto mesh = decode(bytes);
+  return mesh ? from_draco(**mesh) : mesh.error();
+}
+
+// Where Draco's decoder puts each vertex. Draco does not tell; but the order depends on the
+// connectivity alone, so it is read off a mesh whose vertices lie at (their index, 0, 0). The
+// caller checks that both meshes indeed came back in the same order.
 Result<std::vector<std::uint32_t>> find_order(const LatticeMesh& base, int method) {
-  const auto mesh = to_draco(base);
-  std::vector<std::uint32_t> indices(base.positions.size());
-  for (std::uint32_t v = 0; v < indices.size(); ++v) indices[v] = v;
-  add_attribute(*mesh, draco::GeometryAttribute::GENERIC, draco::DT_UINT32, indices);
-  const Result<Bytes> bytes = encode(*mesh, method);
+  std::vector<Vec3i> indices(base.positions.size());
+  for (std::size_t v = 0; v < indices.size(); ++v) indices[v].x = static_cast<std::int32_t>(v);
+  const Result<Bytes> bytes = encode(*to_draco(indices, base.triangles), method);
   if (!bytes) return bytes.error();
-  const auto decoded = decode(*bytes);
+  const Result<LatticeMesh> decoded = decode_own(*bytes);
   if (!decoded) return decoded.error();
-  const auto carried = values_of<std::uint32_t>(
-      **decoded, (*decoded)->GetNamedAttribute(draco::GeometryAttribute::GENERIC));
-  if (!carried) return carried.error();
   std::vector<std::uint32_t> decoded_vertex(indices.size(), 0);
-  for (std::uint32_t v = 0; v < carried->size(); ++v) {
-    if ((*carried)[v] < decoded_vertex.size()) decoded_vertex[(*carried)[v]] = v;
+  for (std::uint32_t v = 0; v < decoded->positions.size(); ++v) {
+    const auto index = static_cast<std::uint32_t>(decoded->positions[v].x);
+    if (index < decoded_vertex.size()) decoded_vertex[index] = v;
   }
   return decoded_vertex;
 }
 
 Result<EncodedBase> encode_with(const LatticeMesh& base, int method) {
   EncodedBase coded;
-  Result<Bytes> bytes = encode(*to_draco(base), method);
-  if (!bytes) return bytes.error();
-  coded.bytes = std::move(*bytes);
-  const auto mesh = decode(coded.bytes);
-  if (!mesh) return mesh.error();
-  Result<LatticeMesh> decoded = from_draco(**mesh);
-  if (!decoded) return decoded.error();
-  coded.decoded = std::move(*decoded);
   Result<std::vector<std::uint32_t>> order = find_order(base, method);
   if (!order) return order.error();
   coded.decoded_vertex = std::move(*order);
+  Result<Bytes> bytes = encode(*to_draco(base.positions, base.triangles), method);
+  if (!bytes) return bytes.error();
+  coded.bytes = std::move(*bytes);
+  Result<LatticeMesh> decoded = decode_own(coded.bytes);
+  if (!decoded) return decoded.error();
+  coded.decoded = std::move(*decoded);
   if (!is_renaming(base, coded)) return runtime_error("Draco: the base mesh came back changed");
+  if (base.triangles.size() > kMaxBaseFacesPerByte * coded.bytes.size()) {
+    return runtime_error("Draco: coded too well for a reader's limit");
+  }
   return coded;
 }
 
@@ -178,7 +167,7 @@ class DracoHeader {
     const std::uint64_t first = varint(), second = varint();
     const std::uint64_t faces = method == kSequential ? first : second;
     const std::uint64_t vertices = method == kSequential ? second : first;
-    if (reader_.failed() || faces != header.base_faces || vertices > header.base_vertices) {
+    if (reader_.failed() || faces != header.base_faces || vertices != header.base_vertices) {
       return bad_input("Draco's counts differ from the header's");
     }
     return {};

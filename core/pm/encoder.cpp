@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <optional>
 
+#include "core/base/box.h"
 #include "core/base/crc32c.h"
 #include "core/pm/base_codec.h"
 #include "core/pm/digest.h"
@@ -16,31 +16,6 @@ namespace {
 
 constexpr std::size_t kFirstChunkBytes = 4 * 1024;
 constexpr std::size_t kLargestChunkBytes = 256 * 1024;
-constexpr std::size_t kLargestSplitBytes = 32;
-
-// The live part of a decimated mesh, and for each of its vertices the id it had there.
-struct CompactBase {
-  LatticeMesh mesh;
-  std::vector<VertexId> original;
-};
-
-CompactBase compact(const HalfEdgeMesh& decimated, std::span<const Vec3i> positions) {
-  CompactBase base;
-  std::vector<std::uint32_t> renamed(decimated.vertex_slots(), kNoIndex);
-  for (std::uint32_t v = 0; v < decimated.vertex_slots(); ++v) {
-    if (!decimated.is_live(VertexId(v))) continue;
-    renamed[v] = static_cast<std::uint32_t>(base.original.size());
-    base.original.push_back(VertexId(v));
-    base.mesh.positions.push_back(positions[v]);
-  }
-  const std::span<const VertexId> corners = decimated.corners();
-  for (std::uint32_t f = 0; f < decimated.face_slots(); ++f) {
-    if (!decimated.is_live(FaceId(f))) continue;
-    base.mesh.triangles.push_back({renamed[corners[3 * f].value], renamed[corners[3 * f + 1].value],
-                                   renamed[corners[3 * f + 2].value]});
-  }
-  return base;
-}
 
 // Replays the log backwards on the base and cuts the splits into chunks.
 class ChunkWriter {
@@ -63,7 +38,7 @@ class ChunkWriter {
     for (auto next = collapses.rbegin(); next != collapses.rend();) {
       if (rows.size() == most_rows) return false;
       SplitEncoder chunk(header_);
-      while (next != collapses.rend() && chunk.byte_count() + kLargestSplitBytes <= target) {
+      while (next != collapses.rend() && chunk.byte_count() + kMaxSplitBytes <= target) {
         put_split(*next++, chunk);
       }
       rows.push_back(finish(std::move(chunk), body));
@@ -123,12 +98,9 @@ FileHeader describe(const EncodeInput& input, const EncodedBase& base) {
     header.faces += static_cast<std::uint64_t>(collapse.removed_faces());
     header.has_borders |= collapse.removed_faces() == 1;
   }
-  header.box_low = header.box_high = input.positions.front();
-  for (const Vec3i p : input.positions) {
-    Vec3i &low = header.box_low, &high = header.box_high;
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  const auto box = bounding_box(input.positions);
+  header.box_low = box.low;
+  header.box_high = box.high;
   return header;
 }
 
@@ -142,12 +114,15 @@ std::size_t most_rows(const FileIndex& index) {
 }  // namespace
 
 Result<Bytes> encode(const EncodeInput& input) {
-  const CompactBase compacted = compact(input.base, input.positions);
-  Result<EncodedBase> base = encode_base(compacted.mesh);
+  LiveMesh live = input.base.live();
+  LatticeMesh mesh;
+  for (const VertexId v : live.vertices) mesh.positions.push_back(input.positions[v.value]);
+  mesh.triangles = std::move(live.triangles);
+  Result<EncodedBase> base = encode_base(mesh);
   if (!base) return prefixed("base mesh", base.error());
   std::vector<VertexId> file_ids(input.base.vertex_slots());
-  for (std::size_t v = 0; v < compacted.original.size(); ++v) {
-    file_ids[compacted.original[v].value] = VertexId(base->decoded_vertex[v]);
+  for (std::size_t v = 0; v < live.vertices.size(); ++v) {
+    file_ids[live.vertices[v].value] = VertexId(base->decoded_vertex[v]);
   }
 
   FileIndex index;
@@ -164,6 +139,8 @@ Result<Bytes> encode(const EncodeInput& input) {
   const Bytes unhashed = write_prologue(index);
   index.header.content_hash = hash_prologue(unhashed);
   Bytes file = write_prologue(index);
+  // The default limits of a reader are the writer's, too.
+  if (const auto readable = parse_prologue(file); !readable) return readable.error();
   file.insert(file.end(), body.begin(), body.end());
   return file;
 }

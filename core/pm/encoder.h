@@ -26,8 +26,8 @@ struct EncodeInput {
 
 /// The whole file. Renames vertices: the base's come first, in the order Draco gives them, then
 /// the others in the order in which they are split off. Chunks grow from 4 KiB by half to 256 KiB;
-/// that bound doubles until the index fits the prologue. Fails (out_of_resources, runtime) only if
-/// Draco does. Deterministic.
+/// that bound doubles until the index fits the prologue. Fails if Draco does, or (out_of_resources)
+/// if the mesh exceeds the default DecodeLimits. Deterministic.
 Result<Bytes> encode(const EncodeInput& input);
 
 }  // namespace pmesh

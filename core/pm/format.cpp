@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/crc32c.h"
+#include "core/base/ids.h"
 
 namespace pmesh {
 namespace {
@@ -16,7 +17,8 @@ constexpr std::uint8_t kBaseCodecDraco = 1;
 constexpr std::uint8_t kGraphLinear = 0;
 constexpr std::uint8_t kSplitCodecPlain = 0;
 constexpr std::uint16_t kFlagBorders = 1u << 0;
-constexpr std::uint16_t kFlagErrorsMeasured = 1u << 2;  // bit 1 is reserved for relocations
+// Bit 1 is reserved for relocations, bit 3 for new components in chunks.
+constexpr std::uint16_t kFlagErrorsMeasured = 1u << 2;
 
 // Bytes of prologue that tell its whole length: magic to chunk count.
 constexpr std::size_t kSizingBytes = 20;
@@ -57,6 +59,10 @@ void put_string(ByteWriter& writer, const std::string& text) {
 std::string get_string(ByteReader& reader) {
   const ByteView text = reader.take(reader.get<std::uint8_t>());
   return {text.begin(), text.end()};
+}
+
+bool is_printable(const std::string& text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
 void put_header(ByteWriter& writer, const FileIndex& index) {
@@ -144,10 +150,10 @@ Result<Layout> parse_layout(ByteReader& reader) {
   if (layout.header_bytes < kFixedHeaderBytes + 3 || layout.header_bytes > kMaxHeaderBytes ||
       layout.row_bytes < kRowBytes || layout.row_bytes > kMaxRowBytes ||
       layout.prologue_bytes() > kMaxPrologueBytes) {
-    return bad_input("header: its sizes are out of range");
+    return damaged("header: its sizes are out of range");
   }
   if ((layout.flags & ~(kFlagBorders | kFlagErrorsMeasured)) != 0) {
-    return bad_input("header: unknown flags");
+    return damaged("header: unknown flags");
   }
   return layout;
 }
@@ -167,7 +173,7 @@ Status parse_header(ByteReader& reader, const Layout& layout, FileHeader& h) {
   h.base_crc = reader.get<std::uint32_t>();
   if (reader.get<std::uint8_t>() != kBaseCodecDraco || reader.get<std::uint8_t>() != kGraphLinear ||
       reader.get<std::uint8_t>() != kSplitCodecPlain) {
-    return bad_input("header: unknown codec");
+    return damaged("header: unknown codec");
   }
   h.lattice.bits = reader.get<std::uint8_t>();
   for (double* d : {&h.lattice.origin.x, &h.lattice.origin.y, &h.lattice.origin.z}) {
@@ -176,14 +182,17 @@ Status parse_header(ByteReader& reader, const Layout& layout, FileHeader& h) {
   h.lattice.step = reader.get_double();
   h.box_low = get_point(reader);
   h.box_high = get_point(reader);
-  if (reader.get<std::uint64_t>() != 0) return bad_input("header: a tail is not known");
+  if (reader.get<std::uint64_t>() != 0) return damaged("header: a tail is not known");
   const ByteView digest = reader.take(h.base_digest.size());
   std::copy(digest.begin(), digest.end(), h.base_digest.begin());
   h.metric = get_string(reader);
   h.parameters = get_string(reader);
   h.unit = get_string(reader);
   if (reader.failed() || reader.position() > layout.header_bytes) {
-    return bad_input("header: its strings overrun it");
+    return damaged("header: its strings overrun it");
+  }
+  if (!is_printable(h.metric) || !is_printable(h.parameters) || !is_printable(h.unit)) {
+    return damaged("header: a string is not printable ASCII");
   }
   return {};
 }
@@ -191,38 +200,39 @@ Status parse_header(ByteReader& reader, const Layout& layout, FileHeader& h) {
 Status check_lattice(const FileHeader& h) {
   const Lattice& lattice = h.lattice;
   if (lattice.bits < kMinLatticeBits || lattice.bits > kMaxLatticeBits) {
-    return bad_input("header: lattice bits are out of range");
+    return damaged("header: lattice bits are out of range");
   }
   const double reach = std::ldexp(lattice.step, lattice.bits);
   for (const double low : {lattice.origin.x, lattice.origin.y, lattice.origin.z}) {
-    if (!std::isfinite(low + reach)) return bad_input("header: the lattice is not finite");
+    if (!std::isfinite(low + reach)) return damaged("header: the lattice is not finite");
   }
-  if (!(lattice.step > 0)) return bad_input("header: the lattice's step is not positive");
+  if (!(lattice.step > 0)) return damaged("header: the lattice's step is not positive");
   const auto ordered = [&](std::int32_t low, std::int32_t high) {
     return 0 <= low && low <= high && high >> lattice.bits == 0;
   };
   if (!ordered(h.box_low.x, h.box_high.x) || !ordered(h.box_low.y, h.box_high.y) ||
       !ordered(h.box_low.z, h.box_high.z)) {
-    return bad_input("header: the bounding box is off the lattice");
+    return damaged("header: the bounding box is off the lattice");
   }
   return {};
 }
 
 Status check_counts(const FileHeader& h, const DecodeLimits& limits) {
-  if (h.faces > limits.max_faces || h.base_faces > limits.max_base_faces) {
+  constexpr std::uint64_t kNameable = kNoIndex / 3;  // by 32-bit half-edges
+  if (h.faces > std::min(limits.max_faces, kNameable) || h.base_faces > limits.max_base_faces) {
     return Error{ErrorCode::out_of_resources, "header: " + std::to_string(h.faces) + " faces (" +
                                                   std::to_string(h.base_faces) +
                                                   " in the base) exceed the limit"};
   }
   // A face has three corners, and every vertex has a face.
   if (h.base_faces == 0 || h.base_vertices < 3 || h.base_vertices > 3 * h.base_faces) {
-    return bad_input("header: impossible counts of the base mesh");
+    return damaged("header: impossible counts of the base mesh");
   }
-  // No real base comes near 512 faces a byte; more is a decompression bomb.
-  if (h.base_bytes > h.file_bytes || h.base_faces / 512 > h.base_bytes) {
-    return bad_input("header: the base's bytes cannot hold its faces");
+  if (h.base_faces > kMaxBaseFacesPerByte * h.base_bytes ||
+      h.base_bytes > kMaxBaseBytesPerFace * h.base_faces + kMaxBaseBytesOverhead) {
+    return damaged("header: the base's bytes do not fit its faces");
   }
-  if (h.file_bytes >> 62 != 0) return bad_input("header: impossible file size");
+  if (h.file_bytes >> 62 != 0) return damaged("header: impossible file size");
   return {};
 }
 
@@ -233,24 +243,24 @@ Status check_rows(const FileIndex& index) {
   for (std::size_t c = 0; c < index.chunks.size(); ++c) {
     const ChunkRow& row = index.chunks[c];
     const std::string where = "index row " + std::to_string(c);
-    if (row.offset != end || row.bytes == 0) return bad_input(where + ": wrong offset or length");
+    if (row.offset != end || row.bytes == 0) return damaged(where + ": wrong offset or length");
     if (row.vertices <= vertices || row.faces <= faces) {
-      return bad_input(where + ": counts do not grow");
+      return damaged(where + ": counts do not grow");
     }
     const std::uint64_t splits = row.vertices - vertices, added = row.faces - faces;
     if (added > 2 * splits || (h.has_borders ? added < splits : added != 2 * splits) ||
-        splits > std::uint64_t{8} * row.bytes) {
-      return bad_input(where + ": impossible counts");
+        splits > std::uint64_t{8} * row.bytes || row.bytes > kMaxSplitBytes * splits) {
+      return damaged(where + ": impossible counts");
     }
     if (h.errors_measured && !(row.max_error >= 0 && row.rms_error >= 0)) {
-      return bad_input(where + ": an error is not a number");
+      return damaged(where + ": an error is not a number");
     }
     end = row.end();
     vertices = row.vertices;
     faces = row.faces;
   }
   if (end != h.file_bytes || vertices != h.vertices || faces != h.faces) {
-    return bad_input("index: its rows do not add up to the header's totals");
+    return damaged("index: its rows do not add up to the header's totals");
   }
   return {};
 }
@@ -306,7 +316,7 @@ Result<std::optional<FileIndex>> parse_prologue(ByteView prefix, const DecodeLim
   const ByteView prologue = prefix.first(layout->prologue_bytes());
   ByteReader crc_field(prologue.subspan(kCrcOffset));
   if (limits.verify_checksums && crc_field.get<std::uint32_t>() != prologue_crc(prologue)) {
-    return bad_input("header and index: wrong checksum");
+    return damaged("header and index: wrong checksum");
   }
   FileIndex index;
   index.prologue_bytes = static_cast<std::uint32_t>(prologue.size());

@@ -28,6 +28,13 @@ inline constexpr std::size_t kMaxRowBytes = 64;
 /// Header and index together; what a client reads blind.
 inline constexpr std::size_t kMaxPrologueBytes = 16 * 1024;
 
+/// Bounds between what a file claims and the bytes it brings, so that neither a small file can
+/// claim much memory nor a few splits many bytes. The encoder keeps them.
+inline constexpr std::uint64_t kMaxBaseFacesPerByte = 64;
+inline constexpr std::uint64_t kMaxBaseBytesPerFace = 64;
+inline constexpr std::uint64_t kMaxBaseBytesOverhead = 4096;
+inline constexpr std::uint64_t kMaxSplitBytes = 32;
+
 /// The first 16 bytes of SHA-256 over header and index, with this field zero.
 using ContentHash = std::array<std::uint8_t, 16>;
 /// 32 lower-case hex digits, as in URLs and ETags.
@@ -89,7 +96,7 @@ struct FileIndex {
 };
 
 /// What a decoder takes from a file at most. A file that claims more is refused
-/// (out_of_resources) before any memory is taken for it.
+/// (out_of_resources) before any memory is taken for it. A decoded face costs about 50 bytes.
 struct DecodeLimits {
   std::uint64_t max_faces = 400'000'000;
   std::uint64_t max_base_faces = 20'000'000;
@@ -109,7 +116,8 @@ std::size_t prologue_size(const FileIndex& index);
 inline constexpr std::size_t kContentHashOffset = 24;
 
 /// Parses the prologue at the start of `prefix`. Nothing if `prefix` ends too early; an error if
-/// no continuation of it can be a PM file (bad_input) or a limit is exceeded (out_of_resources).
+/// no continuation of it can be a PM file: bad_input if it begins like none of a known version,
+/// verification if it is damaged, out_of_resources if a limit is exceeded.
 /// Checks magic, version, CRC, that sections are contiguous and add up, and that counts can be
 /// held by the bytes that claim to hold them. Does not check content_hash (core/pm/digest.h does).
 Result<std::optional<FileIndex>> parse_prologue(ByteView prefix, const DecodeLimits& limits = {});

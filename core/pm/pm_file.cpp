@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/files/out_of_memory.h"
 #include "core/pm/base_codec.h"
 #include "core/pm/digest.h"
-#include "core/pm/stream_decoder.h"
 
 namespace pmesh {
 namespace {
@@ -13,18 +13,18 @@ namespace {
 Result<FileIndex> parse_start(ByteView start, std::uint64_t file_bytes) {
   Result<std::optional<FileIndex>> parsed = parse_prologue(start);
   if (!parsed) return parsed.error();
-  if (!parsed->has_value()) return bad_input("the file ends inside header and index");
+  if (!parsed->has_value()) return damaged("the file ends inside header and index");
   FileIndex& index = **parsed;
   if (hash_prologue(start.first(index.prologue_bytes)) != index.header.content_hash) {
-    return bad_input("header and index: wrong content hash");
+    return damaged("header and index: wrong content hash");
   }
   if (file_bytes < index.base_end()) {
-    return bad_input("the file ends inside the base mesh: " +
-                     std::to_string(index.base_end() - file_bytes) + " bytes are missing");
+    return damaged("the file ends inside the base mesh: " +
+                   std::to_string(index.base_end() - file_bytes) + " bytes are missing");
   }
   if (file_bytes > index.header.file_bytes) {
-    return bad_input("the file is " + std::to_string(file_bytes - index.header.file_bytes) +
-                     " bytes too long");
+    return damaged("the file is " + std::to_string(file_bytes - index.header.file_bytes) +
+                   " bytes too long");
   }
   return std::move(index);
 }
@@ -49,22 +49,30 @@ std::size_t PmFile::whole_chunks() const {
 }
 
 Result<Bytes> PmFile::read(std::uint64_t begin, std::uint64_t end) const {
-  Bytes bytes(end - begin);
-  if (Status read = file_.read(begin, bytes); !read) return read.error();
-  return bytes;
+  return catching_out_of_memory([&]() -> Result<Bytes> {
+    Bytes bytes(end - begin);
+    if (Status read = file_.read(begin, bytes); !read) return read.error();
+    return bytes;
+  });
+}
+
+Status PmFile::feed_section(std::uint64_t begin, std::uint64_t end, StreamDecoder& decoder) const {
+  const Result<Bytes> section = read(begin, end);
+  if (!section) return section.error();
+  return catching_out_of_memory([&] { return decoder.feed(*section); });
 }
 
 Result<RefinableMesh> PmFile::decode(std::size_t chunk_count) const {
   assert(chunk_count <= whole_chunks());
   StreamDecoder decoder(decode_base);
-  std::uint64_t begin = 0;
-  for (std::size_t chunks = 0; chunks <= chunk_count; ++chunks) {
+  Status fed = feed_section(0, index_.prologue_bytes, decoder);
+  std::uint64_t begin = index_.prologue_bytes;
+  for (std::size_t chunks = 0; fed.ok() && chunks <= chunk_count; ++chunks) {
     const std::uint64_t end = index_.prefix_bytes(chunks);
-    const Result<Bytes> section = read(begin, end);
-    if (!section) return section.error();
-    if (Status fed = decoder.feed(*section); !fed) return prefixed(file_.path(), fed.error());
+    fed = feed_section(begin, end, decoder);
     begin = end;
   }
+  if (!fed) return prefixed(file_.path(), fed.error());
   return std::move(decoder.mesh());
 }
 

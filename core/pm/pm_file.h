@@ -7,6 +7,7 @@
 #include "core/base/result.h"
 #include "core/files/read_file.h"
 #include "core/pm/format.h"
+#include "core/pm/stream_decoder.h"
 #include "core/refine/refinable_mesh.h"
 
 namespace pmesh {
@@ -15,8 +16,8 @@ namespace pmesh {
 class PmFile {
  public:
   /// Reads and checks header and index, the content hash among them; no bodies. A partial file is
-  /// welcome as long as it holds the base. Errors begin with the path; bad_input says what is
-  /// wrong, or how many bytes are missing up to the base's end.
+  /// welcome as long as it holds the base. Errors begin with the path: bad_input if the file is no
+  /// PM file, verification if it is damaged or does not hold its base, with what is missing.
   static Result<PmFile> open(const std::string& path);
 
   const FileIndex& index() const { return index_; }
@@ -36,6 +37,8 @@ class PmFile {
  private:
   PmFile(RandomAccessFile file, FileIndex index)
       : file_(std::move(file)), index_(std::move(index)) {}
+
+  Status feed_section(std::uint64_t begin, std::uint64_t end, StreamDecoder& decoder) const;
 
   RandomAccessFile file_;
   FileIndex index_;

@@ -32,25 +32,29 @@ class SplitDecoder {
     if (bits_.failed()) return bad_input("the chunk ends inside a split");
 
     const VertexId parent = kept_vertex(mesh.connectivity(), split.site);
-    const Vec3i from = mesh.positions()[parent.value];
-    const std::array<std::int32_t, 3> start = {from.x, from.y, from.z};
-    std::array<std::int32_t, 3> at{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::int64_t difference = unzigzag(get_rice(differences_[axis]));
-      const std::int64_t coordinate = start[axis] + difference;
-      if (coordinate < 0 || coordinate >> header_.lattice.bits != 0) {
-        return bad_input("the new vertex lies off the lattice");
-      }
-      at[axis] = static_cast<std::int32_t>(coordinate);
-    }
-    if (bits_.failed()) return bad_input("the chunk ends inside a split");
-    split.position = {at[0], at[1], at[2]};
+    const Result<Vec3i> position = get_position(mesh.positions()[parent.value]);
+    if (!position) return position.error();
+    split.position = *position;
     return split;
   }
 
   bool at_end() const { return bits_.at_end(); }
 
  private:
+  Result<Vec3i> get_position(Vec3i parent) {
+    std::array<std::int32_t, 3> at = {parent.x, parent.y, parent.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t difference = unzigzag(get_rice(differences_[axis]));
+      const std::int64_t coordinate = at[axis] + difference;
+      if (coordinate < 0 || coordinate >> header_.lattice.bits != 0) {
+        return bad_input("the new vertex lies off the lattice");
+      }
+      at[axis] = static_cast<std::int32_t>(coordinate);
+    }
+    if (bits_.failed()) return bad_input("the chunk ends inside a split");
+    return Vec3i{at[0], at[1], at[2]};
+  }
+
   SplitKind get_kind() {
     if (!header_.has_borders || bits_.get(1) == 0) return SplitKind::interior;
     return bits_.get(1) == 0 ? SplitKind::border_first : SplitKind::border_last;

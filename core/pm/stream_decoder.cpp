@@ -14,7 +14,7 @@ StreamDecoder::StreamDecoder(BaseDecoder decode_base, const DecodeLimits& limits
 Status StreamDecoder::feed(ByteView bytes) {
   while (status_.ok() && !bytes.empty()) {
     if (complete()) {
-      status_ = bad_input("bytes follow the last chunk");
+      status_ = damaged("bytes follow the last chunk");
       break;
     }
     const std::uint64_t wanted = section_bytes();
@@ -59,23 +59,27 @@ void StreamDecoder::take_prologue() {
 
 void StreamDecoder::take_whole_section(ByteView section) {
   status_ = has_base() ? take_chunk(section) : take_base(section);
-  if (status_.ok()) usable_bytes_ += section.size();
+  if (status_.ok()) {
+    usable_bytes_ += section.size();
+  } else if (status_.error().code == ErrorCode::bad_input) {
+    status_ = damaged(status_.error().message);  // behind a header that stands
+  }
 }
 
 Status StreamDecoder::take_base(ByteView section) {
   const FileHeader& header = index_->header;
   if (limits_.verify_checksums && crc32c(section) != header.base_crc) {
-    return bad_input("base mesh: wrong checksum");
+    return damaged("base mesh: wrong checksum");
   }
   Result<LatticeMesh> base = decode_base_(section, header);
   if (!base) return prefixed("base mesh", base.error());
   if (base->positions.size() != header.base_vertices ||
       base->triangles.size() != header.base_faces) {
-    return bad_input("base mesh: its counts differ from the header's");
+    return damaged("base mesh: its counts differ from the header's");
   }
   for (const Vec3i p : base->positions) {
     if (((p.x | p.y | p.z) >> header.lattice.bits) != 0) {
-      return bad_input("base mesh: a vertex lies off the lattice");
+      return damaged("base mesh: a vertex lies off the lattice");
     }
   }
   Result<RefinableMesh> mesh = RefinableMesh::from_base(*base);
@@ -88,15 +92,20 @@ Status StreamDecoder::take_chunk(ByteView section) {
   const ChunkRow& row = index_->chunks[chunk_count_];
   const std::string where = "chunk " + std::to_string(chunk_count_);
   if (limits_.verify_checksums && crc32c(section) != row.crc) {
-    return bad_input(where + ": wrong checksum");
+    return damaged(where + ": wrong checksum");
   }
   mesh_->set_finest();
-  const std::uint64_t splits = row.vertices - mesh_->vertex_count();
-  const Status decoded =
-      decode_chunk(section, static_cast<std::uint32_t>(splits), index_->header, *mesh_);
-  if (!decoded) return prefixed(where, decoded.error());
-  if (mesh_->face_count() != row.faces) {
-    return bad_input(where + ": its face count differs from the index");
+  const std::uint32_t splits_before = mesh_->applied_splits();
+  Status decoded =
+      decode_chunk(section, static_cast<std::uint32_t>(row.vertices - mesh_->vertex_count()),
+                   index_->header, *mesh_);
+  if (decoded.ok() && mesh_->face_count() != row.faces) {
+    decoded = damaged("its face count differs from the index");
+  }
+  if (!decoded) {
+    mesh_->set_splits(splits_before);
+    mesh_->forget_finer();
+    return prefixed(where, decoded.error());
   }
   ++chunk_count_;
   return {};

@@ -26,8 +26,9 @@ class StreamDecoder {
 
   /// Takes the next bytes. Bytes of a section that is not yet whole are kept (at most 16 KiB of
   /// prologue, or one base or chunk). Whole chunks are applied to mesh() at once, leaving its
-  /// finest LOD standing. After an error the decoder stays failed and repeats the error; what it
-  /// had decoded remains. Bytes after the last section are an error.
+  /// finest LOD standing. After an error the decoder stays failed and repeats the error; the
+  /// whole sections decoded before remain. Bytes after the last section are an error.
+  /// Errors: as parse_prologue; verification for all that is wrong behind the prologue.
   Status feed(ByteView bytes);
 
   /// Everything fed so far in whole sections, from the file's start: feed from here to resume.

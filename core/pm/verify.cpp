@@ -1,7 +1,7 @@
 #include "core/pm/verify.h"
 
-#include <algorithm>
-
+#include "core/base/box.h"
+#include "core/files/out_of_memory.h"
 #include "core/pm/base_codec.h"
 #include "core/pm/digest.h"
 #include "core/pm/pm_file.h"
@@ -11,17 +11,15 @@ namespace pmesh {
 namespace {
 
 Status check_digest(ByteView section, const SectionDigest& expected, const std::string& where) {
-  if (digest_section(section) != expected) return bad_input(where + ": wrong digest");
+  if (digest_section(section) != expected) return damaged(where + ": wrong digest");
   return {};
 }
 
 Status check_box(const FileHeader& header, std::span<const Vec3i> positions) {
-  Vec3i low = positions.front(), high = low;
-  for (const Vec3i p : positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  const Box<std::int32_t> box = bounding_box(positions);
+  if (box.low != header.box_low || box.high != header.box_high) {
+    return damaged("wrong bounding box");
   }
-  if (low != header.box_low || high != header.box_high) return bad_input("wrong bounding box");
   return {};
 }
 
@@ -47,29 +45,27 @@ Status replay(const PmFile& file, StreamDecoder& decoder) {
 
 Status check_content(const PmFile& file, StreamDecoder& decoder) {
   if (!file.complete()) {
-    return bad_input(
+    return damaged(
         "incomplete: " + std::to_string(file.index().header.file_bytes - file.bytes_on_disk()) +
         " bytes are missing");
   }
   if (Status s = replay(file, decoder); !s) return s;
-  if (Status s = decoder.mesh().connectivity().validate(); !s) return s;
+  if (Status s = decoder.mesh().connectivity().validate(); !s) return damaged(s.error().message);
   return check_box(file.index().header, decoder.mesh().positions());
-}
-
-// A file that breaks its format has failed verification; other errors stay what they are.
-Error as_failure(Error error) {
-  if (error.code == ErrorCode::bad_input) error.code = ErrorCode::verification;
-  return error;
 }
 
 }  // namespace
 
 Result<VerifiedFile> verify_file(const std::string& path) {
   const Result<PmFile> file = PmFile::open(path);
-  if (!file) return as_failure(file.error());
-  StreamDecoder decoder(decode_base);
-  if (Status s = check_content(*file, decoder); !s) return prefixed(path, as_failure(s.error()));
-  return VerifiedFile{file->index(), decoder.mesh().snapshot()};
+  if (!file) return file.error();
+  const Result<LatticeMesh> full = catching_out_of_memory([&]() -> Result<LatticeMesh> {
+    StreamDecoder decoder(decode_base);
+    if (Status s = check_content(*file, decoder); !s) return s.error();
+    return decoder.mesh().snapshot();
+  });
+  if (!full) return prefixed(path, full.error());
+  return VerifiedFile{file->index(), *full};
 }
 
 }  // namespace pmesh

@@ -1,4 +1,5 @@
-// Replays a whole PM file and checks every claim it makes.
+// Replays a whole PM file and checks its claims: all but measured errors, for which the original
+// would be needed.
 #pragma once
 
 #include <string>
@@ -19,7 +20,8 @@ struct VerifiedFile {
 /// is possible and every chunk ends at the counts its row claims; that the full mesh is a
 /// 2-manifold and fills the header's bounding box.
 /// Errors: verification, beginning with the path and naming the place, e.g.
-/// "dragon.pmesh: incomplete: 1234 bytes are missing"; or what reading and memory gave.
+/// "dragon.pmesh: incomplete: 1234 bytes are missing"; bad_input for what is no PM file; or what
+/// reading and memory gave.
 Result<VerifiedFile> verify_file(const std::string& path);
 
 }  // namespace pmesh

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/decimate/decimate.h"
+#include "core/files/out_of_memory.h"
 #include "core/io/import.h"
 #include "core/mesh/half_edge_mesh.h"
 #include "core/metrics/table.h"
@@ -15,6 +16,9 @@ namespace {
 
 // Fails now, not after the work, if the output could not be written.
 Status probe_output(const PrecomputeOptions& options) {
+  if (!options.output.ends_with(".pmesh")) {
+    return Error{ErrorCode::usage, options.output + ": expected a name in .pmesh"};
+  }
   const Result<AtomicFile> probe = AtomicFile::create(options.output, options.overwrite);
   return probe ? Status() : Status(probe.error());
 }
@@ -69,10 +73,7 @@ void report_file(const Bytes& file, PrecomputeReport& report) {
   report.hash = to_hex((*index)->header.content_hash);
 }
 
-}  // namespace
-
-Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
-                                    const PrecomputeProgress& progress) {
+Result<PrecomputeReport> run(const PrecomputeOptions& options, const PrecomputeProgress& progress) {
   PrecomputeReport report;
   const Result<AnyMetric> metric = make_metric(options.metric);
   if (!metric) return metric.error();
@@ -99,6 +100,13 @@ Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
     return written.error();
   progress(PrecomputePhase::done, 1);
   return report;
+}
+
+}  // namespace
+
+Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
+                                    const PrecomputeProgress& progress) {
+  return catching_out_of_memory([&] { return run(options, progress); });
 }
 
 }  // namespace pmesh

@@ -14,8 +14,8 @@
 namespace pmesh {
 
 struct PrecomputeOptions {
-  std::string input;  ///< PLY, OBJ, STL or OFF, by extension.
-  std::string output;
+  std::string input;   ///< PLY, OBJ, STL or OFF, by extension.
+  std::string output;  ///< Its name must end in .pmesh, which servers and clients go by.
   std::string metric = "melod";
   std::optional<int>
       lattice_bits;                ///< kMinLatticeBits to kMaxLatticeBits; else chosen by the mesh.
@@ -49,8 +49,8 @@ struct PrecomputeReport {
 using PrecomputeProgress = std::function<void(PrecomputePhase phase, double fraction)>;
 
 /// Imports, cleans, decimates, encodes and writes. On any error the output is as it was before:
-/// absent, or the old file. Errors: usage (unknown metric), bad_input (the mesh, with file and
-/// place), runtime and out_of_resources (files). Same input and options, same bytes.
+/// absent, or the old file. Errors: usage (unknown metric, the output's name), bad_input (the mesh,
+/// with file and place), runtime and out_of_resources (files). Same input and options, same bytes.
 Result<PrecomputeReport> precompute(const PrecomputeOptions& options,
                                     const PrecomputeProgress& progress);
 

@@ -37,6 +37,11 @@ Status RefinableMesh::append(const VertexSplit& split) {
   return {};
 }
 
+void RefinableMesh::forget_finer() {
+  positions_.resize(vertex_count());
+  sites_.resize(applied_);
+}
+
 void RefinableMesh::refine_once() { connectivity_.split(sites_[applied_++]); }
 
 void RefinableMesh::coarsen_once() { connectivity_.undo_split(sites_[--applied_]); }

@@ -36,6 +36,9 @@ class RefinableMesh {
   /// Takes memory for a full mesh of this size at once. Precondition: vertices >= vertex_count().
   void reserve(std::uint32_t vertices, std::uint32_t faces);
 
+  /// Forgets the splits that the LOD that stands does not use.
+  void forget_finer();
+
   /// Splits known, and splits applied in the LOD that stands.
   std::uint32_t known_splits() const { return static_cast<std::uint32_t>(sites_.size()); }
   std::uint32_t applied_splits() const { return applied_; }

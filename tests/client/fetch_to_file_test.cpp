@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +51,11 @@ class FetchToFile : public testing::Test {
 
 Bytes first(std::uint64_t count) {
   return {sample_file().begin(), sample_file().begin() + static_cast<long>(count)};
+}
+
+// Whether a fetch has failed with `text` in its message.
+bool says(const Result<FetchReport>& report, const char* text) {
+  return !report.ok() && report.error().message.find(text) != std::string::npos;
 }
 
 std::uint64_t end_of(const char* query) { return resolve(wish(query), sample_index())->end; }
@@ -129,8 +135,8 @@ TEST_F(FetchToFile, NeverShortensAPrefix) {
 TEST_F(FetchToFile, RefusesToContinueAnotherFile) {
   put("out.pmesh", ByteView(other_file()).first(30'000));
   const Result<FetchReport> report = fetch("", "out.pmesh");
-  ASSERT_FALSE(report.ok());
-  EXPECT_NE(report.error().message.find("another"), std::string::npos);
+  EXPECT_TRUE(says(report, "another")) << report.error().message;
+  EXPECT_TRUE(says(report, "--force"));
   EXPECT_EQ(content("out.pmesh").size(), 30'000u);
 }
 
@@ -151,9 +157,29 @@ TEST_F(FetchToFile, StartsOverByForce) {
 TEST_F(FetchToFile, KeepsWholeSectionsOfAFetchThatFails) {
   transport_.file[sample_index().chunks[2].offset] ^= 1;
   const Result<FetchReport> report = fetch("", "out.pmesh");
-  ASSERT_FALSE(report.ok());
-  EXPECT_NE(report.error().message.find("run again"), std::string::npos);
+  EXPECT_TRUE(says(report, "bytes that had come"));
+  EXPECT_FALSE(says(report, "run again")) << "the same bytes will come again";
   EXPECT_EQ(content("out.pmesh"), first(sample_index().chunks[1].end()));
+}
+
+TEST_F(FetchToFile, SaysToRunAgainAfterALostConnection) {
+  bool is_lost = false;
+  transport_.cut_after = [&] { return std::exchange(is_lost, true) ? 0u : 12'000u; };
+  EXPECT_TRUE(says(fetch("", "out.pmesh"), "run again to continue"));
+  EXPECT_GT(content("out.pmesh").size(), sample_index().base_end());
+  EXPECT_TRUE(says(fetch("", "out.pmesh"), "run again to continue"));
+  EXPECT_TRUE(says(fetch("", "new.pmesh"), "gave up"));
+  EXPECT_FALSE(says(fetch("", "new.pmesh"), "run again to continue")) << "there is nothing yet";
+}
+
+TEST_F(FetchToFile, SaysHowToStartOverAfterTheRemoteWasReplaced) {
+  transport_.cut_after = [this] {
+    const bool is_first = transport_.reads.size() == 1;
+    if (!is_first) transport_.file = other_file();
+    return is_first ? 12'000u : 100'000u;
+  };
+  const Result<FetchReport> report = fetch("", "out.pmesh");
+  EXPECT_TRUE(says(report, "bytes that had come; --force starts over"));
 }
 
 TEST_F(FetchToFile, KeepsALongerFileWhenAFetchFails) {

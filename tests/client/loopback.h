@@ -22,7 +22,7 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// What has come within two seconds; nothing if the client is gone.
+  /// What comes within ten seconds; nothing if the client is gone.
   Bytes receive();
   /// Sends `bytes`; false if the client is gone.
   bool send(ByteView bytes);

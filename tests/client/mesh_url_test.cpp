@@ -40,6 +40,11 @@ TEST(MeshUrl, NamesAMeshOfTheFrameProtocol) {
   EXPECT_EQ(mesh.id, "scans~bunny");
 }
 
+TEST(MeshUrl, TakesASchemeInAnyCase) {
+  EXPECT_EQ(parsed<HttpMesh>("HTTP://h/bunny").id, "bunny");
+  EXPECT_EQ(parsed<TcpMesh>("Tcp://h:1/bunny").id, "bunny");
+}
+
 TEST(MeshUrl, UnderstandsIpv6Addresses) {
   const auto mesh = parsed<TcpMesh>("tcp://[::1]:9000/bunny");
   EXPECT_EQ(mesh.endpoint.host, "::1");
@@ -75,6 +80,8 @@ TEST(MeshUrl, RefusesWhatItCannotMean) {
                            "tcp://h/bunny",
                            "tcp://h:1/",
                            "tcp://h:1",
+                           "tcp://h:1?bunny",
+                           "tcp://h:1/?bunny",
                            "tcp://h:1/a/b"}) {
     const Result<MeshUrl> url = parse_mesh_url(text);
     ASSERT_FALSE(url.ok()) << text;

@@ -4,6 +4,7 @@
 
 #include "client/apply_wish.h"
 #include "core/io/export.h"
+#include "core/pm/digest.h"
 #include "tests/client/sample.h"
 #include "tests/client/scripted_transport.h"
 
@@ -116,6 +117,7 @@ TEST(StreamingClient, DoesNotRetryAFinalError) {
   StreamingClient client(transport, impatient());
   EXPECT_FALSE(client.fetch(wish("")).ok());
   EXPECT_EQ(transport.opens, 1);
+  EXPECT_EQ(client.remedy(), Remedy::none);
 }
 
 TEST(StreamingClient, KeepsWhatCameBeforeAFailure) {
@@ -127,6 +129,19 @@ TEST(StreamingClient, KeepsWhatCameBeforeAFailure) {
   EXPECT_EQ(status.error().code, ErrorCode::verification);
   EXPECT_EQ(client.prefix().chunk_count(), 1u);
   EXPECT_EQ(client.mesh().face_count(), sample_index().chunks[0].faces);
+}
+
+TEST(StreamingClient, DoesNotBelieveCountsThatOnlyTheirDigestsBear) {
+  FileIndex index = sample_index();
+  index.chunks[0].vertices += 1;
+  index.chunks[0].faces += 2;
+  index.header.content_hash = hash_prologue(write_prologue(index));
+  ScriptedTransport transport(sample_file());
+  std::ranges::copy(write_prologue(index), transport.file.begin());
+  StreamingClient client(transport, impatient());
+  const Status status = client.fetch(wish(""));
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::verification) << status.error().message;
 }
 
 TEST(StreamingClient, NoticesAFileReplacedUnderTheTransfer) {
@@ -171,7 +186,7 @@ TEST(StreamingClient, RefusesAFileCutBeforeTheEndOfItsBase) {
     StreamingClient client(transport, impatient());
     const Status status = client.fetch(wish("faces=1"));
     ASSERT_FALSE(status.ok()) << size;
-    EXPECT_EQ(status.error().code, ErrorCode::bad_input) << size;
+    EXPECT_EQ(status.error().code, ErrorCode::verification) << size;
   }
 }
 
@@ -211,6 +226,7 @@ TEST(StreamingClient, StopsWaitingWhenCancelled) {
   StreamingClient client(transport, options);
   EXPECT_FALSE(client.fetch(wish("")).ok());
   EXPECT_EQ(transport.opens, 1);
+  EXPECT_EQ(client.remedy(), Remedy::try_again);
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ TEST(TcpTransport, RefusesAServerThatBreaksTheProtocol) {
         Behaviour{.instead_of_data = encode_frame(FrameType{99}, 1, {})},
         Behaviour{.instead_of_data = encode_done(1, {0, 0, 0, true})}}) {
     FrameServer server(behaviour);
-    const Fetched fetched(server.url());
+    const Fetched fetched(server.url(), "", kImpatient);  // after a gap no frame follows
     EXPECT_FALSE(fetched.status.ok());
     EXPECT_EQ(server.connections(), 1) << fetched.error();
   }

@@ -70,11 +70,14 @@ TEST(VerifiedPrefix, NoticesAnAlteredBase) {
   EXPECT_EQ(status.error().code, ErrorCode::verification);
 }
 
-TEST(VerifiedPrefix, NoticesAnAlteredContentHash) {
-  VerifiedPrefix prefix;
-  const Status status = prefix.append(altered(kContentHashOffset));
-  ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().code, ErrorCode::verification);
+TEST(VerifiedPrefix, RefusesAnAlteredHeaderOrIndex) {
+  for (const std::uint64_t offset :
+       {kContentHashOffset, kContentHashOffset + 20, sample_index().prologue_bytes - 1ul}) {
+    VerifiedPrefix prefix;
+    const Status status = prefix.append(altered(offset));
+    ASSERT_FALSE(status.ok()) << offset;
+    EXPECT_EQ(status.error().code, ErrorCode::verification) << offset;
+  }
 }
 
 TEST(VerifiedPrefix, RefusesOtherFiles) {

@@ -59,8 +59,11 @@ void check(const Frame& frame, const Result<Message>& message, Encode encode) {
 void check_message(const Frame& frame) {
   const std::uint16_t stream = frame.stream;
   switch (frame.type) {
-    case FrameType::hello:
-      if (stream == kConnectionStream) check(frame, parse_hello(frame.payload), encode_hello);
+    case FrameType::hello:  // of a later version only the beginning is known
+      if (const auto hello = parse_hello(frame.payload);
+          hello && hello->version == kProtocolVersion && stream == kConnectionStream) {
+        check(frame, hello, encode_hello);
+      }
       break;
     case FrameType::open:
       check(frame, parse_open(frame.payload),

@@ -34,12 +34,16 @@ TEST(MeshInfoJson, HasEveryMember) {
   EXPECT_EQ(info["chunks"].size(), 3u);
 }
 
-TEST(MeshInfoJson, GivesErrorsOnlyWhereMeasured) {
+TEST(MeshInfoJson, GivesErrorsOnlyIfTheHeaderSaysSo) {
   FileIndex index = testing::sample_index();
   index.chunks[1].max_error = 0.5;
   index.chunks[1].rms_error = 0.25;
+  const json unmeasured = json::parse(mesh_info_json({"bunny", &index}))["chunks"];
+  EXPECT_TRUE(unmeasured[1]["max_error"].is_null());
+  EXPECT_TRUE(unmeasured[1]["rms_error"].is_null());
+
+  index.header.errors_measured = true;
   const json chunks = json::parse(mesh_info_json({"bunny", &index}))["chunks"];
-  EXPECT_TRUE(chunks[0]["max_error"].is_null());
   EXPECT_EQ(chunks[1], (json{{"offset", 170},
                              {"bytes", 30},
                              {"vertices", 22},

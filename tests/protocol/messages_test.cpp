@@ -21,9 +21,18 @@ void expect_exact_size(const Bytes& frame, Parse parse) {
 }
 
 TEST(Messages, HelloComesBack) {
-  const Hello hello{.version = 3, .max_frame = 4096};
+  const Hello hello{.max_frame = 4096};
   EXPECT_EQ(parse_hello(payload(encode_hello(hello))).value(), hello);
   expect_exact_size(encode_hello(hello), parse_hello);
+}
+
+TEST(Messages, HelloOfAnotherVersionMayGoOnAsItLikes) {
+  for (const std::string_view rest :
+       {std::string_view(), std::string_view("\0\x10\0\0 and more")}) {
+    const std::string later = std::string("PMTP\x01\0", 6).append(rest);
+    EXPECT_EQ(parse_hello(as_bytes(later)).value().version, 1);
+  }
+  EXPECT_FALSE(parse_hello(as_bytes("PMTP\x01")).ok());
 }
 
 TEST(Messages, HelloNeedsItsMagicAndAUsableLimit) {
@@ -38,14 +47,17 @@ TEST(Messages, OpenComesBackWithAndWithoutAHash) {
   EXPECT_EQ(parse_open(payload(encode_open(1, one))).value(), one);
 }
 
-TEST(Messages, OpenRejectsPartOfAHashAndABadId) {
+TEST(Messages, OpenRejectsPartOfAHashOrOfAnId) {
   const Bytes frame = encode_open(1, {.id = "bunny", .hash = ContentHash{}});
   EXPECT_FALSE(parse_open(payload(frame).first(payload(frame).size() - 1)).ok());
-  EXPECT_FALSE(parse_open(as_bytes(std::string_view("\x02\0..", 4))).ok());
   EXPECT_FALSE(parse_open(as_bytes(std::string_view("\xFF\xFF"
                                                     "a",
                                                     3)))
                    .ok());
+}
+
+TEST(Messages, OpenLeavesTheIdToItsReceiver) {
+  EXPECT_EQ(parse_open(as_bytes(std::string_view("\x02\0..", 4))).value().id, "..");
 }
 
 TEST(Messages, OpenedComesBack) {

@@ -48,6 +48,8 @@ TEST(Routes, DecodesPercentEscapesAfterCuttingThePath) {
 TEST(Routes, TakesTheAbsoluteForm) {
   EXPECT_EQ(route("http://host:8080/catalog"), Route(CatalogRoute{}));
   EXPECT_EQ(route("http://host"), Route(UnknownRoute{}));
+  EXPECT_EQ(route("HTTP://host/catalog"), Route(CatalogRoute{}));
+  EXPECT_EQ(route("Https://host/catalog"), Route(CatalogRoute{}));
 }
 
 TEST(Routes, DoesNotKnowOtherPaths) {

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/fixtures/temporary_directory.h"
+#include "tests/server/captured_log.h"
+#include "tests/server/descriptor_limit.h"
 #include "tests/server/sample_file.h"
 
 namespace pmesh {
@@ -43,6 +45,10 @@ class HttpAnswerTest : public ::testing::Test {
   std::unique_ptr<MeshStore> store_;
   std::string target_;
 };
+
+TEST_F(HttpAnswerTest, SampleHasTheHashThatTheFuzzSeedsName) {
+  EXPECT_EQ(bunny_.hash(), "2136a91f9fcd0a7339acbda185a3bf5c");
+}
 
 TEST_F(HttpAnswerTest, CatalogueListsTheMeshes) {
   const HttpAnswer answer = get("/catalog");
@@ -168,7 +174,7 @@ TEST_F(HttpAnswerTest, RangeWorksWithinAWish) {
   const HttpAnswer answer = get(file("?chunks=1-2"), {.range = "bytes=5-"});
   EXPECT_EQ(answer.status, 206);
   EXPECT_EQ(answer.span, (ByteSpan{chunk_end(0) + 5, chunk_end(2)}));
-  EXPECT_EQ(answer.fields.find("Content-Range"), "bytes 5-599/600");
+  EXPECT_EQ(answer.fields.find("Content-Range"), "bytes 5-499/500");
 }
 
 TEST_F(HttpAnswerTest, BadWishesAreBadRequests) {
@@ -219,12 +225,27 @@ TEST_F(HttpAnswerTest, PreflightAllowsRanges) {
 
 TEST_F(HttpAnswerTest, ReplacedFileHasANewTag) {
   const std::string before(get("/bunny").fields.find("ETag"));
-  const SampleFile other = make_sample({100, 200, 400}, 2);
+  const SampleFile other = make_sample({100, 200, 300}, 2);
   directory_.write("incoming", other.bytes);
   std::filesystem::rename(directory_ / "incoming", directory_ / "bunny.pmesh");
   EXPECT_EQ(get("/bunny", {.if_none_match = before}).status, 200);
   EXPECT_EQ(get(file()).status, 404);
   EXPECT_EQ(get("/bunny/" + other.hash() + ".pmesh").status, 200);
+}
+
+TEST_F(HttpAnswerTest, AMeshThatCannotBeOpenedNowIsToBeAskedForAgain) {
+  if (!testing::DescriptorLimit::can_leave_none()) GTEST_SKIP() << "sanitizers need descriptors";
+  directory_.write("late.pmesh", bunny_.bytes);
+  const testing::CapturedLog log;
+  const testing::DescriptorLimit limit(testing::DescriptorLimit::none_left());
+  for (const std::string& target : {std::string("/late"), "/late/" + bunny_.hash() + ".pmesh",
+                                    "/late/" + bunny_.hash() + "/c/0"}) {
+    const HttpAnswer answer = get(target);
+    EXPECT_EQ(answer.status, 503) << target;
+    EXPECT_EQ(answer.fields.find("Retry-After"), "1");
+    EXPECT_EQ(answer.fields.find("Cache-Control"), "no-store");
+  }
+  EXPECT_EQ(get("/nobody").status, 404);
 }
 
 TEST_F(HttpAnswerTest, HeadTextIsTheWholeHead) {

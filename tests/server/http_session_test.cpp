@@ -160,7 +160,7 @@ TEST_F(HttpSessionTest, ResetsAPeerThatDoesNotRead) {
   TestClient client(address(), 4096);
   client.send(get_request(file()));
   EXPECT_NE(client.receive(1), "");
-  std::this_thread::sleep_for(300ms);
+  client.wait_for_end();
   EXPECT_LT(client.receive_all().size(), bunny_.bytes.size());
   EXPECT_TRUE(client.was_reset());
 }

@@ -1,10 +1,14 @@
 #include "server/mesh_store.h"
 
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/fixtures/temporary_directory.h"
+#include "tests/server/captured_log.h"
+#include "tests/server/descriptor_limit.h"
 #include "tests/server/sample_file.h"
 
 namespace pmesh {
@@ -18,6 +22,26 @@ using testing::SampleFile;
 class MeshStoreTest : public ::testing::Test {
  protected:
   void open() { store_ = MeshStore::open(directory_ / "", milliseconds(0)).value(); }
+
+  template <class... Args>
+  MeshPtr found(const Args&... args) {
+    return store_->find(args...).value();
+  }
+  ErrorCode error_of(const std::string& id) {
+    const auto found = store_->find(id);
+    EXPECT_FALSE(found.ok());
+    return found ? ErrorCode{} : found.error().code;
+  }
+
+  /// Writes over bytes of a file, and moves its time on in case that the clock has not.
+  void write_in_place(const std::string& name, std::uint64_t offset, const std::string& bytes) {
+    const fs::path path = directory_ / name;
+    const auto modified = fs::last_write_time(path);
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(offset)) << bytes;
+    file.close();
+    fs::last_write_time(path, modified + std::chrono::seconds(++times_written_));
+  }
 
   std::vector<std::string> listed() {
     std::vector<std::string> ids;
@@ -33,6 +57,7 @@ class MeshStoreTest : public ::testing::Test {
 
   TemporaryDirectory directory_;
   std::unique_ptr<MeshStore> store_;
+  int times_written_ = 0;
   const SampleFile first_ = make_sample({100, 200}, 1);
   const SampleFile second_ = make_sample({100, 200}, 2);
 };
@@ -43,7 +68,7 @@ TEST_F(MeshStoreTest, ListsFilesOfSubdirectoriesById) {
   directory_.write("a.pmesh", second_.bytes);
   open();
   EXPECT_EQ(listed(), (std::vector<std::string>{"a", "scans~new~b"}));
-  EXPECT_EQ(store_->find("scans~new~b")->hash(), first_.index.header.content_hash);
+  EXPECT_EQ(found("scans~new~b")->hash(), first_.index.header.content_hash);
 }
 
 TEST_F(MeshStoreTest, SkipsWhatIsNoCompletePmFile) {
@@ -62,8 +87,8 @@ TEST_F(MeshStoreTest, SkipsWhatIsNoCompletePmFile) {
   fs::create_directory(directory_ / "directory.pmesh");
   open();
   EXPECT_EQ(listed(), std::vector<std::string>{"good"});
-  EXPECT_EQ(store_->find("partial"), nullptr);
-  EXPECT_EQ(store_->find("directory"), nullptr);
+  EXPECT_EQ(found("partial"), nullptr);
+  EXPECT_EQ(found("directory"), nullptr);
 }
 
 TEST_F(MeshStoreTest, FindsNothingOutsideTheDirectory) {
@@ -72,17 +97,17 @@ TEST_F(MeshStoreTest, FindsNothingOutsideTheDirectory) {
   fs::create_symlink(outside / "secret.pmesh", directory_ / "link.pmesh");
   fs::create_directory_symlink(outside / "", directory_ / "linked");
   open();
-  EXPECT_EQ(store_->find("link"), nullptr);
-  EXPECT_EQ(store_->find("linked~secret"), nullptr);
-  EXPECT_EQ(store_->find("../secret"), nullptr);
+  EXPECT_EQ(found("link"), nullptr);
+  EXPECT_EQ(found("linked~secret"), nullptr);
+  EXPECT_EQ(found("../secret"), nullptr);
   EXPECT_TRUE(listed().empty());
 }
 
 TEST_F(MeshStoreTest, FindsAFileThatCameLater) {
   open();
-  EXPECT_EQ(store_->find("late"), nullptr);
+  EXPECT_EQ(found("late"), nullptr);
   replace("late.pmesh", first_.bytes);
-  EXPECT_NE(store_->find("late"), nullptr);
+  EXPECT_NE(found("late"), nullptr);
   EXPECT_EQ(listed(), std::vector<std::string>{"late"});
 }
 
@@ -91,38 +116,135 @@ TEST_F(MeshStoreTest, ForgetsAFileThatWasRemoved) {
   open();
   fs::remove(directory_ / "a.pmesh");
   EXPECT_TRUE(listed().empty());
-  EXPECT_EQ(store_->find("a"), nullptr);
+  EXPECT_EQ(found("a"), nullptr);
 }
 
 TEST_F(MeshStoreTest, GivesTheNewFileAndKeepsTheOldWhileItIsHeld) {
   directory_.write("a.pmesh", first_.bytes);
   open();
-  MeshPtr held = store_->find("a");
+  MeshPtr held = found("a");
   replace("a.pmesh", second_.bytes);
-  EXPECT_EQ(store_->find("a")->hash(), second_.index.header.content_hash);
-  EXPECT_EQ(store_->find("a", held->hash()), held);
+  EXPECT_EQ(found("a")->hash(), second_.index.header.content_hash);
+  EXPECT_EQ(found("a", held->hash()), held);
   EXPECT_TRUE(held->intact());
 
   const ContentHash old = held->hash();
   held.reset();
-  EXPECT_EQ(store_->find("a", old), nullptr);
+  EXPECT_EQ(found("a", old), nullptr);
 }
 
 TEST_F(MeshStoreTest, TakesAFileThatWasRepaired) {
   directory_.write("a.pmesh", as_bytes("broken"));
   open();
-  EXPECT_EQ(store_->find("a"), nullptr);
+  EXPECT_EQ(found("a"), nullptr);
   directory_.write("a.pmesh", first_.bytes);
-  EXPECT_NE(store_->find("a"), nullptr);
+  EXPECT_NE(found("a"), nullptr);
 }
 
 TEST_F(MeshStoreTest, NoticesAFileWrittenInPlace) {
   directory_.write("a.pmesh", first_.bytes);
   open();
-  const MeshPtr mesh = store_->find("a");
+  const MeshPtr mesh = found("a");
   fs::resize_file(directory_ / "a.pmesh", first_.bytes.size() - 1);
   EXPECT_FALSE(mesh->intact());
-  EXPECT_EQ(store_->find("a"), nullptr);
+  EXPECT_EQ(found("a"), nullptr);
+}
+
+TEST_F(MeshStoreTest, ServesNoBytesThatWereAlteredInPlace) {
+  directory_.write("a.pmesh", first_.bytes);
+  open();
+  const MeshPtr held = found("a");
+  const std::uint64_t place = first_.index.chunks[1].offset + 50;
+  write_in_place("a.pmesh", place, "altered");
+  EXPECT_EQ(found("a"), nullptr);
+  EXPECT_EQ(found("a", held->hash()), nullptr);
+  EXPECT_TRUE(listed().empty());
+
+  write_in_place("a.pmesh", first_.index.prologue_bytes, "altered");  // and not by a second look
+  EXPECT_EQ(found("a"), nullptr);
+  write_in_place("a.pmesh", 0, first_.text());
+  EXPECT_NE(found("a"), nullptr);
+}
+
+TEST_F(MeshStoreTest, ServesAFileThatWasOnlyTouched) {
+  directory_.write("a.pmesh", first_.bytes);
+  open();
+  write_in_place("a.pmesh", 0, "");
+  EXPECT_NE(found("a"), nullptr);
+}
+
+TEST_F(MeshStoreTest, FailsForAsLongAsAFileCannotBeOpened) {
+  if (!testing::DescriptorLimit::can_leave_none()) GTEST_SKIP() << "sanitizers need descriptors";
+  open();
+  directory_.write("a.pmesh", first_.bytes);
+  const testing::CapturedLog log;
+  {
+    const testing::DescriptorLimit limit(testing::DescriptorLimit::none_left());
+    EXPECT_EQ(error_of("a"), ErrorCode::out_of_resources);
+    EXPECT_EQ(error_of("a"), ErrorCode::out_of_resources);
+    EXPECT_FALSE(store_->find("a", first_.index.header.content_hash).ok());
+    EXPECT_EQ(found("nobody"), nullptr);
+  }
+  EXPECT_EQ(log.count("skipped"), 1u);
+  EXPECT_NE(found("a"), nullptr);
+}
+
+TEST_F(MeshStoreTest, OpensMeshesUpToHalfTheDescriptors) {
+  const testing::CapturedLog log;
+  for (int i = 10; i < 50; ++i) directory_.write(std::to_string(i) + ".pmesh", first_.bytes);
+  const testing::DescriptorLimit limit(60);
+  open();
+  EXPECT_EQ(listed().size(), 30u);
+  EXPECT_EQ(error_of("49"), ErrorCode::out_of_resources);
+  EXPECT_EQ(log.count("descriptors"), 1u);
+  EXPECT_EQ(log.count("skipped"), 0u);
+
+  replace("10.pmesh", second_.bytes);  // takes its own place
+  EXPECT_EQ(found("10")->hash(), second_.index.header.content_hash);
+  fs::remove(directory_ / "10.pmesh");
+  EXPECT_EQ(listed().size(), 30u);
+  EXPECT_EQ(found("10"), nullptr);
+}
+
+TEST_F(MeshStoreTest, ForgetsNothingWhenAScanEndsEarly) {
+  if (!testing::DescriptorLimit::can_leave_none()) GTEST_SKIP() << "sanitizers need descriptors";
+  fs::create_directory(directory_ / "scans");
+  directory_.write("scans/a.pmesh", first_.bytes);
+  open();
+  const testing::CapturedLog log;
+  const testing::DescriptorLimit limit(testing::DescriptorLimit::none_left());
+  EXPECT_EQ(listed(), std::vector<std::string>{"scans~a"});
+  EXPECT_EQ(log.count("ended early"), 1u);
+}
+
+TEST_F(MeshStoreTest, LogsOnceWhatItPassesOver) {
+  for (const char* name : {"sp ace.pmesh", "catalog.pmesh", "a~b.pmesh", "mesh.ply"}) {
+    directory_.write(name, first_.bytes);
+  }
+  fs::create_directory(directory_ / "directory.pmesh");
+  ::mkfifo((directory_ / "pipe.pmesh").c_str(), 0600);
+  fs::create_symlink("nowhere", directory_ / "dangling.pmesh");
+  const testing::CapturedLog log;
+  open();
+  EXPECT_TRUE(listed().empty());
+  for (const char* name : {"sp ace", "catalog", "a~b", "pipe", "dangling"}) {
+    EXPECT_EQ(log.count(name), 1u) << name;
+  }
+  EXPECT_EQ(log.count("skipped"), 5u);
+}
+
+TEST_F(MeshStoreTest, DoesNotServeThroughALinkedDirectory) {
+  fs::create_directory(directory_ / "sub");
+  directory_.write("sub/b.pmesh", first_.bytes);
+  fs::create_directory_symlink("sub", directory_ / "link");
+  fs::create_symlink("b.pmesh", directory_ / "sub/linked.pmesh");
+  const testing::CapturedLog log;
+  open();
+  EXPECT_EQ(found("link~b"), nullptr);
+  EXPECT_EQ(listed(), (std::vector<std::string>{"sub~b", "sub~linked"}));
+  EXPECT_EQ(found("link~b"), nullptr);
+  EXPECT_EQ(log.count("link to a directory"), 1u);
+  EXPECT_EQ(log.count("link/b.pmesh"), 1u);
 }
 
 TEST_F(MeshStoreTest, OpensNothingButADirectory) {

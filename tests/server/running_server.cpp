@@ -6,6 +6,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -85,6 +86,11 @@ std::string TestClient::receive(std::size_t count) {
 std::string TestClient::receive_all() {
   for (std::string more = receive_some(); !more.empty(); more = receive_some()) held_ += more;
   return std::exchange(held_, {});
+}
+
+void TestClient::wait_for_end() {
+  pollfd waiting{.fd = socket_, .events = 0, .revents = 0};
+  EXPECT_EQ(::poll(&waiting, 1, 1000 * static_cast<int>(kPatience.tv_sec)), 1);
 }
 
 std::string HttpResponse::field(const std::string& name) const {

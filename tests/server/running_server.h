@@ -44,6 +44,9 @@ class TestClient {
   std::string receive(std::size_t count);
   /// All bytes up to the connection's end.
   std::string receive_all();
+  /// Waits until the peer has ended the connection both ways or has reset it, for up to ten
+  /// seconds; reads nothing meanwhile.
+  void wait_for_end();
   /// True if the connection ended by a reset, as far as it was read.
   bool was_reset() const { return was_reset_; }
 

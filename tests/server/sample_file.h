@@ -2,6 +2,7 @@
 // more than the prologue.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/pm/digest.h"
@@ -30,9 +31,23 @@ inline void append_noise(Bytes& bytes, std::size_t count, std::uint32_t seed) {
   }
 }
 
-/// A base of 16 faces and 10 vertices in 300 bytes, then chunks of these sizes that add ten
-/// vertices and twenty faces each. Another seed gives another file of the same size.
-inline SampleFile make_sample(const std::vector<std::uint32_t>& chunk_bytes = {100, 200, 400},
+/// Noise in the place of base and chunks, with its true digests in the index.
+inline Bytes make_sections(FileIndex& index, std::uint32_t seed) {
+  Bytes sections;
+  const auto append = [&](std::size_t count) {
+    const std::size_t begin = sections.size();
+    append_noise(sections, count, seed++);
+    return digest_section(ByteView(sections).subspan(begin));
+  };
+  index.header.base_digest = append(index.header.base_bytes);
+  for (ChunkRow& row : index.chunks) row.digest = append(row.bytes);
+  return sections;
+}
+
+/// A base of 16 faces and 10 vertices in 300 bytes, then chunks of these sizes. Each adds ten
+/// vertices and twenty faces, or as many more as its bytes need to be plausible. Another seed gives
+/// another file of the same size.
+inline SampleFile make_sample(const std::vector<std::uint32_t>& chunk_bytes = {100, 200, 300},
                               std::uint32_t seed = 1) {
   SampleFile sample;
   FileHeader& header = sample.index.header;
@@ -44,15 +59,17 @@ inline SampleFile make_sample(const std::vector<std::uint32_t>& chunk_bytes = {1
   header.box_high = {4095, 4095, 4095};
   header.metric = "melod";
   for (const std::uint32_t bytes : chunk_bytes) {
-    header.vertices += 10;
-    header.faces += 20;
+    const std::uint64_t splits = std::max<std::uint64_t>(10, bytes / kMaxSplitBytes + 1);
+    header.vertices += splits;
+    header.faces += 2 * splits;
     sample.index.chunks.push_back(
         {.bytes = bytes, .vertices = header.vertices, .faces = header.faces});
   }
+  const Bytes sections = make_sections(sample.index, seed);
   write_prologue(sample.index);  // for its totals
   header.content_hash = hash_prologue(write_prologue(sample.index));
   sample.bytes = write_prologue(sample.index);
-  append_noise(sample.bytes, sample.index.header.file_bytes - sample.bytes.size(), seed);
+  sample.bytes.insert(sample.bytes.end(), sections.begin(), sections.end());
   return sample;
 }
 

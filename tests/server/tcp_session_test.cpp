@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/messages.h"
+#include "tests/server/descriptor_limit.h"
 #include "tests/server/running_server.h"
 #include "tests/server/sample_file.h"
 
@@ -236,13 +237,29 @@ TEST_F(TcpSessionTest, BadWishesFailOnTheirStream) {
 TEST_F(TcpSessionTest, OpenFailsOnItsStream) {
   serve();
   connect();
-  send(encode_open(1, {.id = "nobody", .hash = {}}));
-  expect_failure(1, FailureCode::not_found);
+  for (const char* id : {"nobody", "", "..", "a/b", "health"}) {
+    send(encode_open(1, {.id = id, .hash = {}}));
+    expect_failure(1, FailureCode::not_found);
+  }
   send(encode_open(1, {.id = "bunny", .hash = ContentHash{}}));
   expect_failure(1, FailureCode::hash_changed);
   send(encode_want(1, {}));
   expect_failure(1, FailureCode::not_open);
   expect_alive();
+}
+
+TEST_F(TcpSessionTest, OpenOfAMeshThatCannotBeOpenedNowMayBeTriedAgain) {
+  if (!testing::DescriptorLimit::can_leave_none()) GTEST_SKIP() << "sanitizers need descriptors";
+  serve();
+  connect();
+  running_->directory().write("late.pmesh", bunny_.bytes);
+  {
+    const testing::DescriptorLimit limit(testing::DescriptorLimit::none_left());
+    send(encode_open(1, {.id = "late", .hash = {}}));
+    expect_failure(1, FailureCode::busy);
+  }
+  send(encode_open(1, {.id = "late", .hash = {}}));
+  EXPECT_EQ(next().type, FrameType::opened);
 }
 
 TEST_F(TcpSessionTest, OneStreamCanBeOpen) {
@@ -284,13 +301,19 @@ TEST_F(TcpSessionTest, OtherVersionsAreNotSpoken) {
   send(encode_hello({.version = 77}));
   EXPECT_EQ(next().type, FrameType::hello);
   expect_end(FailureCode::unsupported_version);
+
+  client_ = std::make_unique<TestClient>(running_->server().tcp_address());
+  const std::string longer("PMTP\x01\0\0\0\x10\0 and more", 19);
+  send(encode_frame(FrameType::hello, 0, as_bytes(longer)));
+  EXPECT_EQ(next().type, FrameType::hello);
+  expect_end(FailureCode::unsupported_version);
 }
 
 TEST_F(TcpSessionTest, WhatBreaksTheRulesEndsTheConnection) {
   serve();
   for (const Bytes& frame :
        {encode_empty(FrameType::opened, 1), encode_empty(static_cast<FrameType>(99), 1),
-        encode_empty(FrameType::want, 1), encode_empty(FrameType::open, 1),
+        encode_empty(FrameType::want, 1), encode_want(0, {}), encode_empty(FrameType::open, 1),
         encode_open(0, {.id = "bunny", .hash = {}}), Bytes{0, 0, 0, 0, 10, 1, 0, 0},
         Bytes{0xFF, 0xFF, 0xFF, 0xFF, 10, 0, 0, 0},
         encode_frame(FrameType::ping, 0, as_bytes("x"))}) {
@@ -329,7 +352,7 @@ TEST_F(TcpSessionTest, ResetsAPeerThatDoesNotRead) {
   connect(kMaxFramePayload, 4096);
   send(encode_open(1, {.id = "bunny", .hash = {}}));
   want("");
-  std::this_thread::sleep_for(300ms);
+  client_->wait_for_end();
   EXPECT_LT(client_->receive_all().size(), bunny_.bytes.size());
   EXPECT_TRUE(client_->was_reset());
 }

@@ -103,9 +103,12 @@ TEST_P(DecimateShape, LogBackwardsRebuildsTheInput) {
 }
 
 TEST_P(DecimateShape, LogDoesNotDependOnTheUnit) {
-  IndexedMesh scaled = GetParam().mesh;
-  for (Vec3d& p : scaled.positions) p = 1024.0 * p;
-  EXPECT_EQ(ids(decimated(scaled, 4).log), ids(decimated(GetParam().mesh, 4).log));
+  const auto expected = ids(decimated(GetParam().mesh, 4).log);
+  for (const double unit : {1024.0, std::ldexp(1.0, 520), std::ldexp(1.0, -560)}) {
+    IndexedMesh scaled = GetParam().mesh;
+    for (Vec3d& p : scaled.positions) p = unit * p;
+    EXPECT_EQ(ids(decimated(scaled, 4).log), expected) << unit;
+  }
 }
 
 TEST_P(DecimateShape, FarFromTheOriginGoesAsFar) {

@@ -22,12 +22,7 @@ class Reference {
  public:
   explicit Reference(const IndexedMesh& mesh)
       : mesh_(half_edges(mesh)), positions_(mesh.positions), vertices_(mesh.positions.size()) {
-    Vec3d low = positions_[0], high = low;
-    for (const Vec3d& p : positions_) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    scale_ = 1 / length(high - low);
+    scale_ = unit_scale(positions_);
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) evaluate(VertexId(v), 0);
   }
 

@@ -46,6 +46,15 @@ TEST(BaseCodec, TellsWhereEachVertexWent) {
   EXPECT_EQ(std::unique(sorted.begin(), sorted.end()), sorted.end());
 }
 
+TEST(BaseCodec, UsesEdgeBreakerBecauseItsOrderIsFound) {
+  constexpr std::size_t kMethodOffset = 8;
+  for (const shapes::Shape& shape : shapes::manifolds()) {
+    const auto coded = encode_base(on_lattice(shape.mesh, 12));
+    ASSERT_TRUE(coded.ok());
+    EXPECT_EQ(coded->bytes[kMethodOffset], 1) << shape.name;
+  }
+}
+
 TEST(BaseCodec, RefusesCountsOtherThanTheHeaders) {
   const LatticeMesh mesh = on_lattice(shapes::icosphere(2), 10);
   const auto coded = encode_base(mesh);

@@ -135,12 +135,27 @@ TEST(Prologue, RefusesCountsThatItsBytesCannotHold) {
     i.header.base_faces = 1'000'000;
     i.header.base_vertices = 500'000;
   });
-  EXPECT_EQ(bomb, "header: the base's bytes cannot hold its faces");
+  EXPECT_EQ(bomb, "header: the base's bytes do not fit its faces");
   EXPECT_EQ(error_of([](FileIndex& i) {
               i.chunks[1].vertices = i.header.vertices = 1006;
               i.chunks[1].faces = i.header.faces = 2008;
             }),
             "index row 1: impossible counts");
+}
+
+TEST(Prologue, RefusesMoreBytesThanItsCountsCanNeed) {
+  const std::string misfit = "header: the base's bytes do not fit its faces";
+  EXPECT_EQ(error_of([](FileIndex& i) { i.header.base_bytes = 0; }), misfit);
+  EXPECT_EQ(error_of([](FileIndex& i) { i.header.base_bytes = std::uint64_t{1} << 40; }), misfit);
+  EXPECT_EQ(error_of([](FileIndex& i) { i.header.base_bytes = 64 * 4 + 4097; }), misfit);
+  EXPECT_EQ(error_of([](FileIndex& i) { i.chunks[0].bytes = 65; }),
+            "index row 0: impossible counts");
+}
+
+TEST(Prologue, RefusesStringsThatCannotBePrinted) {
+  const std::string unprintable = "header: a string is not printable ASCII";
+  EXPECT_EQ(error_of([](FileIndex& i) { i.header.metric = "\xFF\xFE"; }), unprintable);
+  EXPECT_EQ(error_of([](FileIndex& i) { i.header.unit = "\x1B[2J"; }), unprintable);
 }
 
 TEST(Prologue, RefusesAnImpossibleLattice) {

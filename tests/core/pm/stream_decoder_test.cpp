@@ -90,6 +90,19 @@ TEST(StreamDecoder, StaysFailedAndKeepsWhatItHad) {
   EXPECT_EQ(decoder.mesh().face_count(), index.header.base_faces);
 }
 
+TEST(StreamDecoder, AChunkThatFailsHalfWayLeavesNoTrace) {
+  EncodedShape shape = encode_shape("ball", shapes::icosphere(4));
+  const FileIndex index = **parse_prologue(shape.file);
+  shape.file[index.chunks[1].offset + index.chunks[1].bytes / 2] ^= 0x55;
+  DecodeLimits limits;
+  limits.verify_checksums = false;
+  StreamDecoder decoder(decode_base, limits);
+  ASSERT_FALSE(decoder.feed(shape.file).ok());
+  decoder.mesh().set_finest();
+  EXPECT_EQ(decoder.mesh().face_count(), index.chunks[0].faces);
+  EXPECT_EQ(decoder.usable_bytes(), index.chunks[0].end());
+}
+
 TEST(StreamDecoder, HoldsItsLimitsBeforeTakingMemory) {
   const EncodedShape shape = encode_shape("ball", shapes::icosphere(3));
   DecodeLimits limits;

@@ -65,6 +65,8 @@ TEST_F(Verify, SeesThroughForgedClaims) {
   EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.base_digest[0] ^= 1; })),
             "base mesh: wrong digest");
   EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.box_low.x += 1; })), "wrong bounding box");
+  EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.base_bytes = 0; })),
+            "header: the base's bytes do not fit its faces");
   EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.has_borders = true; })).substr(0, 8),
             "chunk 0:");
   EXPECT_EQ(error_of(forged([](FileIndex& i) {
