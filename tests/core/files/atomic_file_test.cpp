@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tests/core/files/temporary_folder.h"
+#include "tests/fixtures/temporary_directory.h"
 
 namespace pmesh {
 namespace {
@@ -36,13 +36,13 @@ class FileSizeLimit {
 
 class AtomicFileTest : public testing::Test {
  protected:
-  std::string target() const { return folder_.file("out.bin"); }
-  std::string leftover() const { return folder_.file(".out.bin.partial"); }
+  std::string target() const { return (folder_ / "out.bin"); }
+  std::string leftover() const { return (folder_ / ".out.bin.partial"); }
   Result<AtomicFile> create(Overwrite overwrite = Overwrite::yes) const {
     return AtomicFile::create(target(), overwrite);
   }
 
-  TemporaryFolder folder_;
+  TemporaryDirectory folder_;
 };
 
 TEST_F(AtomicFileTest, HoldsAllThatWasWrittenAfterCommit) {
@@ -165,16 +165,16 @@ TEST_F(AtomicFileTest, ReportsAFullDisk) {
 }
 
 TEST_F(AtomicFileTest, RefusesAFolderThatIsNotThere) {
-  const std::string path = folder_.file("absent/out.bin");
+  const std::string path = (folder_ / "absent/out.bin");
   const Result<AtomicFile> file = AtomicFile::create(path, Overwrite::yes);
   ASSERT_FALSE(file.ok());
   EXPECT_EQ(file.error().code, ErrorCode::runtime);
-  EXPECT_EQ(file.error().message, path + ": cannot create " + folder_.file("absent/.out.bin") +
+  EXPECT_EQ(file.error().message, path + ": cannot create " + (folder_ / "absent/.out.bin") +
                                       ".partial: No such file or directory");
 }
 
 TEST_F(AtomicFileTest, RefusesWhatIsNoRegularFile) {
-  for (const std::string& path : {std::string("/dev/null"), folder_.file("")}) {
+  for (const std::string& path : {std::string("/dev/null"), (folder_ / "")}) {
     EXPECT_FALSE(AtomicFile::create(path, Overwrite::yes).ok()) << path;
   }
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "tests/core/files/temporary_folder.h"
+#include "tests/fixtures/temporary_directory.h"
 
 namespace pmesh {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 std::string as_text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 TEST(ReadFile, GivesAllBytes) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("data");
+  const TemporaryDirectory folder;
+  const std::string path = (folder / "data");
   for (const std::string text : {"", "x", "some bytes\n"}) {
     put_contents(path, text);
     const Result<Bytes> bytes = read_file(path);
@@ -27,8 +27,8 @@ TEST(ReadFile, GivesAllBytes) {
 }
 
 TEST(ReadFile, ReadsAPipeOfUnknownLength) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("pipe");
+  const TemporaryDirectory folder;
+  const std::string path = (folder / "pipe");
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   const std::string text(3'000'000, 'x');
   std::thread writer([&] { put_contents(path, text); });
@@ -39,8 +39,8 @@ TEST(ReadFile, ReadsAPipeOfUnknownLength) {
 }
 
 TEST(ReadFile, RefusesMoreThanTheLimit) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("data");
+  const TemporaryDirectory folder;
+  const std::string path = (folder / "data");
   put_contents(path, "123456");
   EXPECT_TRUE(read_file(path, 6).ok());
   const Result<Bytes> bytes = read_file(path, 5);
@@ -61,15 +61,15 @@ TEST(ReadFile, NamesAFileThatIsNotThere) {
 }
 
 TEST(ReadFile, RefusesAFolder) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(read_file(folder.file("")).error().message,
-            folder.file("") + ": cannot read: Is a directory");
+  const TemporaryDirectory folder;
+  EXPECT_EQ(read_file((folder / "")).error().message,
+            (folder / "") + ": cannot read: Is a directory");
 }
 
 TEST(RandomAccessFile, ReadsExactSpans) {
-  const TemporaryFolder folder;
-  put_contents(folder.file("data"), "0123456789");
-  const Result<RandomAccessFile> file = RandomAccessFile::open(folder.file("data"));
+  const TemporaryDirectory folder;
+  put_contents((folder / "data"), "0123456789");
+  const Result<RandomAccessFile> file = RandomAccessFile::open((folder / "data"));
   ASSERT_TRUE(file.ok());
   EXPECT_EQ(file->size(), 10u);
   std::array<std::uint8_t, 4> span{};
@@ -78,23 +78,23 @@ TEST(RandomAccessFile, ReadsExactSpans) {
 }
 
 TEST(RandomAccessFile, RefusesToReadPastTheEnd) {
-  const TemporaryFolder folder;
-  put_contents(folder.file("data"), "0123456789");
-  const Result<RandomAccessFile> file = RandomAccessFile::open(folder.file("data"));
+  const TemporaryDirectory folder;
+  put_contents((folder / "data"), "0123456789");
+  const Result<RandomAccessFile> file = RandomAccessFile::open((folder / "data"));
   ASSERT_TRUE(file.ok());
   std::array<std::uint8_t, 4> span{};
   const Status read = file->read(7, span);
   ASSERT_FALSE(read.ok());
-  EXPECT_EQ(read.error().message, folder.file("data") + ": ends at byte 10");
+  EXPECT_EQ(read.error().message, (folder / "data") + ": ends at byte 10");
 }
 
 TEST(RandomAccessFile, KeepsReadingAFileThatWasReplaced) {
-  const TemporaryFolder folder;
-  put_contents(folder.file("data"), "old");
-  const Result<RandomAccessFile> file = RandomAccessFile::open(folder.file("data"));
+  const TemporaryDirectory folder;
+  put_contents((folder / "data"), "old");
+  const Result<RandomAccessFile> file = RandomAccessFile::open((folder / "data"));
   ASSERT_TRUE(file.ok());
-  put_contents(folder.file("other"), "new");
-  std::filesystem::rename(folder.file("other"), folder.file("data"));
+  put_contents((folder / "other"), "new");
+  std::filesystem::rename((folder / "other"), (folder / "data"));
   std::array<std::uint8_t, 3> span{};
   ASSERT_TRUE(file->read(0, span).ok());
   EXPECT_EQ(std::string(span.begin(), span.end()), "old");

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/files/read_file.h"
-#include "tests/core/files/temporary_folder.h"
 #include "tests/core/io/import_checks.h"
+#include "tests/fixtures/temporary_directory.h"
 
 namespace pmesh {
 namespace {
@@ -85,9 +85,9 @@ TEST(Export, ObjIsPinned) {
 }
 
 TEST(Export, WritesTheFileThatTheExtensionNames) {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   for (const char* name : {"out.ply", "out.OBJ"}) {
-    const std::string path = folder.file(name);
+    const std::string path = (folder / name);
     ASSERT_TRUE(export_mesh(path, kMesh, kUnit).ok());
     const Result<ImportedMesh> back = import_mesh(path);
     ASSERT_TRUE(back.ok());
@@ -103,8 +103,8 @@ TEST(Export, RefusesOtherFormats) {
 }
 
 TEST(Import, ErrorsBeginWithTheFilesName) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("bad.obj");
+  const TemporaryDirectory folder;
+  const std::string path = (folder / "bad.obj");
   put_contents(path, "v 1 2\n");
   EXPECT_EQ(import_mesh(path).error().message, path + ": line 1: expected 3 numbers, found 2");
   EXPECT_EQ(import_mesh("mesh.glb").error().code, ErrorCode::usage);
