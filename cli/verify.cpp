@@ -1,4 +1,4 @@
-// pmesh verify: replays a PM file, checks every claim, and compares it with its source if asked.
+// pmesh verify: replays a PM file, checks its claims, and compares it with its source if asked.
 #include "core/pm/verify.h"
 
 #include <cstdio>
@@ -54,7 +54,7 @@ int run_verify(const VerifyOptions& options) {
 
 void add_verify(CLI::App& app, int& exit_status) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* verb = app.add_subcommand("verify", "Replay a PM file and check every claim it makes");
+  CLI::App* verb = app.add_subcommand("verify", "Replay a PM file and check its claims");
   verb->add_option("FILE", options->file, "PM file")->required();
   verb->add_option(
       "--source", options->source,

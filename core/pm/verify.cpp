@@ -1,5 +1,7 @@
 #include "core/pm/verify.h"
 
+#include <utility>
+
 #include "core/base/box.h"
 #include "core/files/out_of_memory.h"
 #include "core/pm/base_codec.h"
@@ -59,13 +61,13 @@ Status check_content(const PmFile& file, StreamDecoder& decoder) {
 Result<VerifiedFile> verify_file(const std::string& path) {
   const Result<PmFile> file = PmFile::open(path);
   if (!file) return file.error();
-  const Result<LatticeMesh> full = catching_out_of_memory([&]() -> Result<LatticeMesh> {
+  Result<LatticeMesh> full = catching_out_of_memory([&]() -> Result<LatticeMesh> {
     StreamDecoder decoder(decode_base);
     if (Status s = check_content(*file, decoder); !s) return s.error();
     return decoder.mesh().snapshot();
   });
   if (!full) return prefixed(path, full.error());
-  return VerifiedFile{file->index(), *full};
+  return VerifiedFile{file->index(), std::move(*full)};
 }
 
 }  // namespace pmesh
