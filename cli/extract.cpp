@@ -36,7 +36,7 @@ int run_extract(const ExtractOptions& options) {
   if (!file) return report("extract", file.error());
   const LodRequest wish = options.wish.wish();
   const Result<Resolution> resolved = resolve(wish, file->index());
-  if (!resolved) return report("extract", resolved.error());
+  if (!resolved) return report("extract", prefixed(options.file, resolved.error()));
   const std::size_t chunks = std::min<std::size_t>(resolved->chunk_count, file->whole_chunks());
   Result<RefinableMesh> mesh = file->decode(chunks);
   if (!mesh) return report("extract", mesh.error());

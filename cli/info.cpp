@@ -37,10 +37,12 @@ Json to_json(const PmFile& file) {
       {"bbox",
        {{"min", to_json(h.lattice.position(h.box_low))},
         {"max", to_json(h.lattice.position(h.box_high))}}},
+      {"bbox_diagonal", h.box_diagonal()},
       {"unit", h.unit},
       {"metric", h.metric},
       {"parameters", h.parameters},
       {"borders", h.has_borders},
+      {"errors_measured", h.errors_measured},
       {"hash", to_hex(h.content_hash)},
       {"file_bytes", h.file_bytes},
       {"bytes_on_disk", file.bytes_on_disk()},
@@ -60,10 +62,25 @@ Json to_json(const PmFile& file) {
   return json;
 }
 
+unsigned long long number(std::uint64_t n) { return n; }
+
+void print_chunks(const FileIndex& index) {
+  const bool has_errors = index.header.errors_measured;
+  std::printf("%6s %12s %10s %12s %12s", "chunk", "offset", "bytes", "faces", "vertices");
+  if (has_errors) std::printf(" %12s %12s", "max_error", "rms_error");
+  std::printf("\n");
+  for (std::size_t c = 0; c < index.chunks.size(); ++c) {
+    const ChunkRow& row = index.chunks[c];
+    std::printf("%6zu %12llu %10u %12llu %12llu", c, number(row.offset), row.bytes,
+                number(row.faces), number(row.vertices));
+    if (has_errors) std::printf(" %12.6g %12.6g", row.max_error, row.rms_error);
+    std::printf("\n");
+  }
+}
+
 void print_text(const PmFile& file) {
   const FileIndex& index = file.index();
   const FileHeader& h = index.header;
-  const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
   std::printf("hash          %s\n", to_hex(h.content_hash).c_str());
   std::printf("file          %llu bytes%s\n", number(h.file_bytes),
               file.complete() ? "" : " (partial)");
@@ -77,13 +94,11 @@ void print_text(const PmFile& file) {
               number(h.base_vertices), number(h.base_bytes));
   std::printf("quantization  %d bits, step %.6g%s%s\n", h.lattice.bits, h.lattice.step,
               h.unit.empty() ? "" : " ", h.unit.c_str());
+  std::printf("bbox diagonal %.6g%s%s\n", h.box_diagonal(), h.unit.empty() ? "" : " ",
+              h.unit.c_str());
   std::printf("metric        %s %s\n", h.metric.c_str(), h.parameters.c_str());
-  std::printf("%6s %12s %10s %12s %12s\n", "chunk", "offset", "bytes", "faces", "vertices");
-  for (std::size_t c = 0; c < index.chunks.size(); ++c) {
-    const ChunkRow& row = index.chunks[c];
-    std::printf("%6zu %12llu %10u %12llu %12llu\n", c, number(row.offset), row.bytes,
-                number(row.faces), number(row.vertices));
-  }
+  if (!h.errors_measured) std::printf("errors not measured\n");
+  print_chunks(index);
 }
 
 int run_info(const InfoOptions& options) {

@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   pmesh::cli::add_info(app, exit_status);
   pmesh::cli::add_verify(app, exit_status);
   pmesh::cli::add_extract(app, exit_status);
+  pmesh::cli::add_compare(app, exit_status);
   pmesh::cli::add_serve(app, exit_status);
   pmesh::cli::add_fetch(app, exit_status);
   try {

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -15,12 +16,14 @@
 #include "cli/json.h"
 #include "cli/progress_bar.h"
 #include "cli/verb.h"
+#include "core/metrics/table.h"
 
 namespace pmesh::cli {
 namespace {
 
 struct Options {
   PrecomputeOptions precompute;
+  std::map<std::string, std::string> metric_parameters;  // by name, of those given
   int quantization = 0;
   bool force = false;
   bool json = false;
@@ -97,6 +100,7 @@ Json to_json(const Options& options, const PrecomputeReport& report, const Phase
           {"faces", report.faces},
           {"vertices", report.vertices},
           {"metric", options.precompute.metric},
+          {"parameters", report.metric_parameters},
           {"base_faces", report.base_faces},
           {"base_vertices", report.base_vertices},
           {"base_bytes", report.base_bytes},
@@ -145,7 +149,42 @@ void print_text(const Options& options, const PrecomputeReport& report, const Ph
               number(report.file_bytes), report.chunks, report.hash.c_str(), clock.total());
 }
 
+// As make_metric() takes them.
+std::string joined(const std::map<std::string, std::string>& parameters) {
+  std::string text;
+  for (const auto& [name, value] : parameters) {
+    if (!text.empty()) text += ',';
+    text += name;
+    if (!value.empty()) text += '=' + value;
+  }
+  return text;
+}
+
+// --metric, and an option for every parameter that a metric has.
+void add_metric_options(CLI::App& verb, Options& options) {
+  std::string help = "Decimation metric:";
+  for (const MetricRow& row : metric_table()) {
+    help += "\n  " + std::string(row.name) + ": " + std::string(row.summary);
+  }
+  verb.add_option("--metric", options.precompute.metric, help)->capture_default_str();
+  for (const MetricParameter& parameter : parameter_table()) {
+    const std::string name(parameter.name), help_text(parameter.help);
+    if (parameter.kind == ParameterKind::flag) {
+      verb.add_flag_callback(
+          "--" + name, [&options, name] { options.metric_parameters[name]; }, help_text);
+      continue;
+    }
+    verb.add_option_function<std::string>(
+            "--" + name,
+            [&options, name](const std::string& value) { options.metric_parameters[name] = value; },
+            help_text)
+        ->type_name(parameter.kind == ParameterKind::number ? "NUMBER"
+                                                            : std::string(parameter.values));
+  }
+}
+
 int run_precompute(Options& options) {
+  options.precompute.metric_parameters = joined(options.metric_parameters);
   if (options.quantization != 0) options.precompute.lattice_bits = options.quantization;
   options.precompute.overwrite = options.force ? Overwrite::yes : Overwrite::no;
   const PrecomputeOptions& job = options.precompute;
@@ -178,7 +217,7 @@ void add_precompute(CLI::App& app, int& exit_status) {
   CLI::App* verb = app.add_subcommand("precompute", "Turn a mesh into a progressive PM file");
   verb->add_option("IN", job.input, "Mesh file: .ply, .obj, .stl or .off")->required();
   verb->add_option("-o,--output", job.output, "PM file to write: .pmesh")->required();
-  verb->add_option("--metric", job.metric, "Decimation metric")->capture_default_str();
+  add_metric_options(*verb, *options);
   verb->add_option(
           "--quantization", options->quantization,
           "Bits a coordinate; default: a step of at most 1/24 of the median edge, 10 to 20 bits")

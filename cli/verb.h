@@ -10,6 +10,7 @@ void add_precompute(CLI::App& app, int& exit_status);
 void add_info(CLI::App& app, int& exit_status);
 void add_verify(CLI::App& app, int& exit_status);
 void add_extract(CLI::App& app, int& exit_status);
+void add_compare(CLI::App& app, int& exit_status);
 void add_serve(CLI::App& app, int& exit_status);
 void add_fetch(CLI::App& app, int& exit_status);
 

@@ -21,6 +21,7 @@ void move_to(const LodRequest& wish, const FileIndex& index, std::uint64_t cover
       return mesh.set_vertices(wish.count);
     case WishKind::ratio:
       return mesh.set_faces(faces_of_ratio(wish.ratio, index));
+    case WishKind::error:
     case WishKind::bytes:
     case WishKind::chunks:
       const std::uint64_t known = mesh.known_splits();

@@ -14,14 +14,14 @@ namespace pmesh {
 struct AppliedWish {
   std::uint32_t faces = 0;
   std::uint32_t vertices = 0;
-  /// False if the base already exceeds the wish (the base stands then), or if `mesh` knows too
-  /// little of the file to tell the LOD wished for (the finest one known stands then).
+  /// False if the wish resolves so (Resolution::reached), or if `mesh` knows too little of the file
+  /// to tell the LOD wished for (the finest one known stands then).
   bool reached = true;
 };
 
 /// Moves `mesh`, decoded from the file of `index` or from a prefix of it, to the LOD of `wish`.
-/// Byte and chunk wishes give the LOD at the end of their last whole chunk. Fails (usage) only for
-/// a chunks wish beyond the file's chunks.
+/// Error, byte and chunk wishes give the LOD at the end of their last whole chunk. Fails as
+/// resolve() does.
 Result<AppliedWish> apply_wish(const LodRequest& wish, const FileIndex& index, RefinableMesh& mesh);
 
 }  // namespace pmesh

@@ -57,7 +57,10 @@ class PrefixFetch {
 
   Result<FetchReport> run() {
     if (Status resumed = resume(); !resumed) return resumed.error();
-    if (Status fetched = client_.fetch(job_.wish); !fetched) return keep_progress(fetched.error());
+    if (Status fetched = client_.fetch(job_.wish); !fetched) {
+      const bool is_mistake = fetched.error().code == ErrorCode::usage;
+      return is_mistake ? fetched.error() : keep_progress(fetched.error());
+    }
     const Result<Resolution> wished = resolve(job_.wish, *client_.prefix().index());
     if (!wished) return wished.error();
     if (Status written = write(wished->end); !written) return written.error();

@@ -33,8 +33,8 @@ struct FetchReport {
 
 /// Fails without a trace, but for one case: a .pmesh output whose fetch fails after some chunks is
 /// written up to them if that is more than was there before (and the error says so, and whether to
-/// run again or to start over). Errors of the output name it; the others are the streaming
-/// client's.
+/// run again or to start over), unless it fails because resolve() refuses the wish. Errors of the
+/// output name it; the others are the streaming client's.
 Result<FetchReport> fetch_to_file(Transport& transport, const FetchJob& job,
                                   const StreamOptions& options);
 

@@ -66,11 +66,17 @@ TransportStatus HttpMeshTransport::read(const ReadRequest& request, const ByteSi
   std::optional<ByteSpan> range;
   if (request.end) range = ByteSpan{request.from, *request.end};
   BodyOffsets body{sink};
-  const auto on_head = [&](const HttpResponse& response) {
+  bool is_refused = false;
+  const auto on_head = [&](const HttpResponse& response) -> TransportStatus {
+    is_refused = response.status == 400 && !request.end;
+    if (is_refused) return std::nullopt;
     TransportStatus failed = client_.check_status(response, target);
     return failed ? failed : body.begin(response, request.from, client_.url_of(target));
   };
-  return client_.get(target, range, on_head, std::ref(body));
+  const auto on_body = [&](ByteView bytes) { return !is_refused && body(bytes); };
+  const TransportStatus failed = client_.get(target, range, on_head, on_body);
+  if (failed || !is_refused) return failed;
+  return read({request.from, request.from + kMaxPrologueBytes, {}}, sink);
 }
 
 HttpFileTransport::HttpFileTransport(HttpFile file, const TransportOptions& options)

@@ -9,7 +9,8 @@
 namespace pmesh {
 
 /// A mesh of a pmesh server: the id's JSON names the file by its hash; bytes are then asked by the
-/// wish, or by a range once the end is known.
+/// wish, or by a range once the end is known. To a wish that the server refuses it gives the first
+/// 16 KiB, from which the client can tell why.
 class HttpMeshTransport : public Transport {
  public:
   HttpMeshTransport(HttpMesh mesh, const TransportOptions& options);

@@ -45,6 +45,7 @@ Status StreamingClient::resume_from(ByteView prefix) {
 
 Status StreamingClient::fetch(const LodRequest& wish) {
   remedy_ = Remedy::none;
+  if (Status sensible = check_wish(wish); !sensible) return bad_bytes(sensible.error()).error;
   int failures = 0;
   std::chrono::milliseconds delay = options_.retry.first_delay;
   for (;;) {
@@ -119,6 +120,7 @@ bool StreamingClient::accept(const LodRequest& wish, std::uint64_t offset, ByteV
   const std::uint64_t known = prefix_.size() - offset;
   if (known >= bytes.size()) return true;
   failure_ = take(bytes.subspan(static_cast<std::size_t>(known)));
+  if (failure_.ok()) failure_ = check_wish(wish);
   report_progress(wish);
   return failure_.ok() && !has_all_of(wish);
 }
@@ -131,6 +133,13 @@ Status StreamingClient::take(ByteView bytes) {
   const ByteView whole = prefix_.verified().subspan(static_cast<std::size_t>(decoder_.fed_bytes()));
   if (Status decoded = decoder_.feed(whole); !decoded) return decoded.error();
   return appended;
+}
+
+// Whether the file can give what `wish` names; nothing is said before its index is known.
+Status StreamingClient::check_wish(const LodRequest& wish) const {
+  if (!prefix_.index()) return {};
+  const Result<Resolution> resolution = resolve(wish, *prefix_.index());
+  return resolution ? Status() : Status(resolution.error());
 }
 
 Status StreamingClient::check_hash(const ContentHash& remote) {
@@ -148,11 +157,12 @@ TransportError StreamingClient::bad_bytes(const Error& error) const {
   return final_error(options_.name.empty() ? error : prefixed(options_.name, error));
 }
 
-// Where the bytes for `wish` end: at the remote's end, if it has less of the file.
+// Where the bytes for `wish` end: at the remote's end, if it has less of the file. Nothing if that
+// is not known, or check_wish() fails.
 std::optional<std::uint64_t> StreamingClient::end_of(const LodRequest& wish) const {
   if (!prefix_.index()) return std::nullopt;
   const Result<Resolution> resolution = resolve(wish, *prefix_.index());
-  if (!resolution) return prefix_.index()->header.file_bytes;
+  if (!resolution) return std::nullopt;
   return std::min(resolution->end, transport_.remote().available_bytes.value_or(resolution->end));
 }
 

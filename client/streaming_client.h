@@ -58,9 +58,10 @@ class StreamingClient {
 
   /// Fetches what `wish` needs and is not held yet; may be called again with a finer wish. Fails
   /// with the transport's last error; as VerifiedPrefix::append() does, and with `verification` too
-  /// if a section that matches its digest cannot be decoded; with `runtime` if the remote file is
-  /// another than the one begun. What came before the failure
-  /// stays. If the remote holds only a part of the file, success means that part.
+  /// if a section that matches its digest cannot be decoded; with `usage`, as soon as the index is
+  /// known, if resolve() refuses the wish; with `runtime` if the remote file is another than the
+  /// one begun. What came before the failure stays. If the remote holds only a part of the file,
+  /// success means that part.
   Status fetch(const LodRequest& wish);
 
   /// Of the last fetch, if that has failed.
@@ -80,6 +81,7 @@ class StreamingClient {
   TransportStatus read(const LodRequest& wish);
   bool accept(const LodRequest& wish, std::uint64_t offset, ByteView bytes);
   Status take(ByteView bytes);
+  Status check_wish(const LodRequest& wish) const;
   Status check_hash(const ContentHash& remote);
   Error another_file(const std::string& how);
   TransportError bad_bytes(const Error& error) const;

@@ -116,6 +116,7 @@ TransportStatus TcpTransport::unexpected(const Frame& frame) const {
   const Result<Failure> failure = parse_failure(frame.payload);
   if (!failure) return broken(failure.error().message);
   const std::string text = mesh_.endpoint.text() + ": " + mesh_.id + ": " + failure->text;
+  if (failure->code == FailureCode::bad_wish) return final_error(usage_error(text));
   return TransportError{runtime_error(text), is_retryable(failure->code)};
 }
 

@@ -23,6 +23,18 @@ Result<LodRequest> parse_ratio(std::string_view value) {
   return LodRequest{.kind = WishKind::ratio, .ratio = *ratio};
 }
 
+Result<LodRequest> parse_error(std::string_view value) {
+  const bool is_percent = value.ends_with('%');
+  if (is_percent) value.remove_suffix(1);
+  const auto error = parse_whole<double>(value);
+  if (!error || !std::isfinite(*error) || *error < 0) {
+    return usage_error(
+        "wish error: expected a finite number of at least 0, in the mesh's units or with % in "
+        "percent of the bounding box's diagonal");
+  }
+  return LodRequest{.kind = WishKind::error, .error = *error, .error_is_percent = is_percent};
+}
+
 Result<LodRequest> parse_chunks(std::string_view value) {
   const std::size_t dash = value.find('-');
   if (dash == std::string_view::npos) return usage_error("wish chunks: expected first-last");
@@ -57,6 +69,12 @@ Resolution prefix(const FileIndex& index, std::size_t chunk_count) {
           .chunk_count = chunk_count,
           .faces = index.faces_after(chunk_count),
           .vertices = index.vertices_after(chunk_count)};
+}
+
+Resolution whole_file(const FileIndex& index) {
+  Resolution everything = prefix(index, index.chunks.size());
+  everything.end = index.header.file_bytes;
+  return everything;
 }
 
 /// The base mesh, for a wish that wants less than it.
@@ -123,6 +141,21 @@ Resolution resolve_bytes(std::uint64_t count, const FileIndex& index) {
                 most_chunks(index, [&](std::size_t c) { return index.prefix_bytes(c) <= count; }));
 }
 
+/// Errors need not fall from row to row, so this is no binary search.
+Result<Resolution> resolve_error(const LodRequest& wish, const FileIndex& index) {
+  if (!index.header.errors_measured) {
+    return usage_error("wish error: this file was precomputed without measured errors");
+  }
+  const double bound =
+      wish.error_is_percent ? wish.error / 100 * index.header.box_diagonal() : wish.error;
+  for (std::size_t c = 0; c < index.chunks.size(); ++c) {
+    if (index.chunks[c].max_error <= bound) return prefix(index, c + 1);
+  }
+  Resolution finest = whole_file(index);
+  finest.reached = false;
+  return finest;
+}
+
 Result<Resolution> resolve_chunks(const LodRequest& wish, const FileIndex& index) {
   if (wish.last_chunk >= index.chunks.size()) {
     return usage_error("wish chunks: the file has " + std::to_string(index.chunks.size()) +
@@ -147,9 +180,10 @@ Result<LodRequest> parse_wish(std::string_view query) {
   if (key == "faces") return parse_count(WishKind::faces, key, value);
   if (key == "vertices") return parse_count(WishKind::vertices, key, value);
   if (key == "ratio") return parse_ratio(value);
+  if (key == "error") return parse_error(value);
   if (key == "bytes") return parse_count(WishKind::bytes, key, value);
   if (key == "chunks") return parse_chunks(value);
-  return usage_error("unknown wish; expected faces, vertices, ratio, bytes or chunks");
+  return usage_error("unknown wish; expected faces, vertices, ratio, error, bytes or chunks");
 }
 
 std::string to_query(const LodRequest& wish) {
@@ -162,6 +196,8 @@ std::string to_query(const LodRequest& wish) {
       return "vertices=" + std::to_string(wish.count);
     case WishKind::ratio:
       return "ratio=" + shortest(wish.ratio);
+    case WishKind::error:
+      return "error=" + shortest(wish.error) + (wish.error_is_percent ? "%" : "");
     case WishKind::bytes:
       return "bytes=" + std::to_string(wish.count);
     case WishKind::chunks:
@@ -184,14 +220,14 @@ Result<Resolution> resolve(const LodRequest& wish, const FileIndex& index) {
       return resolve_vertices(wish.count, index);
     case WishKind::ratio:
       return resolve_faces(faces_of_ratio(wish.ratio, index), index);
+    case WishKind::error:
+      return resolve_error(wish, index);
     case WishKind::bytes:
       return resolve_bytes(wish.count, index);
     case WishKind::chunks:
       return resolve_chunks(wish, index);
   }
-  Resolution everything = prefix(index, index.chunks.size());
-  everything.end = index.header.file_bytes;
-  return everything;
+  return whole_file(index);
 }
 
 }  // namespace pmesh

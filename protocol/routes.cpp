@@ -47,8 +47,24 @@ std::optional<ContentHash> file_hash(std::string_view name) {
   return parse_hash(name.substr(0, name.size() - kMeshFileSuffix.size()));
 }
 
+/// percent_decoded, but a '%' at the very end, where no escape can begin, stands for itself.
+std::optional<std::string> decoded_query(std::string_view query) {
+  const bool ends_in_percent = query.ends_with('%');
+  if (ends_in_percent) query.remove_suffix(1);
+  auto decoded = percent_decoded(query);
+  if (decoded && ends_in_percent) decoded->push_back('%');
+  return decoded;
+}
+
+/// The inverse for a wish, whose one character that needs an escape is the '%' at its end.
+std::string escaped_query(const LodRequest& wish) {
+  std::string query = to_query(wish);
+  if (query.ends_with('%')) query.append("25");
+  return query;
+}
+
 Result<Route> file_route(const std::string& id, const ContentHash& hash, std::string_view query) {
-  const auto decoded = percent_decoded(query);
+  const auto decoded = decoded_query(query);
   if (!decoded) return usage_error("the query has a broken percent escape");
   auto wish = parse_wish(*decoded);
   if (!wish) return wish.error();
@@ -92,7 +108,7 @@ Result<Route> parse_target(std::string_view target) {
 std::string file_target(std::string_view id, const ContentHash& hash, const LodRequest& wish) {
   std::string target = "/";
   target.append(id).append("/").append(to_hex(hash)).append(kMeshFileSuffix);
-  const std::string query = to_query(wish);
+  const std::string query = escaped_query(wish);
   if (!query.empty()) target.append("?").append(query);
   return target;
 }

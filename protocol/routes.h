@@ -58,10 +58,11 @@ using Route =
 /// The route of a request target in origin form ("/bunny") or absolute form
 /// ("http://host/bunny"). The path is split at '/' before its percent escapes are decoded, and
 /// dot segments are not resolved: they are no ids. Fails (usage) on a broken escape, another form
-/// of target or a bad wish: answer 400. Queries of routes that take no wish are ignored.
+/// of target or a bad wish: answer 400. A '%' that ends a query begins no escape and stands for
+/// itself: "?error=1%" is "?error=1%25". Queries of routes that take no wish are ignored.
 Result<Route> parse_target(std::string_view target);
 
-/// "/{id}/{hash}.pmesh", with "?wish" unless it is for everything.
+/// "/{id}/{hash}.pmesh", with "?wish" (escaped as a query must be) unless it is for everything.
 std::string file_target(std::string_view id, const ContentHash& hash, const LodRequest& wish = {});
 
 /// `text` with its %XX escapes decoded; nothing if one is broken.

@@ -12,16 +12,14 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/decimate/collapse_log.h"
+#include "core/decimate/working_mesh.h"
 #include "core/mesh/half_edge_mesh.h"
 #include "core/metrics/table.h"
 
 namespace pmesh {
-
-/// What a decimation is doing at a moment.
-enum class DecimationPhase : std::uint8_t { evaluate_all, heap, gather, cost, legality, collapse };
-inline constexpr int kDecimationPhases = 6;
 
 struct DecimateOptions {
   AnyMetric metric;
@@ -41,6 +39,9 @@ struct DecimateOptions {
 struct DecimationReport {
   std::uint32_t faces = 0;  ///< Of the decimated mesh.
   std::uint32_t vertices = 0;
+  /// The faces that were left when no triangle passed the metric's planar test any more, if others
+  /// were then collapsed.
+  std::optional<std::uint32_t> planarity_relaxed_at_faces;
   /// The faces that were left when no collapse without fold-over remained, if collapses with
   /// fold-over were then made.
   std::optional<std::uint32_t> fold_over_relaxed_at_faces;
@@ -49,13 +50,16 @@ struct DecimationReport {
 struct Decimation {
   HalfEdgeMesh mesh;  ///< The base: live faces and vertices in the ids of the input.
   CollapseLog log;
+  /// By vertex: where it is in the base, or where it was when it was removed.
+  std::vector<Vec3d> positions;
   DecimationReport report;
 };
 
 /// Decimates `mesh`, whose vertex v lies at positions[v]. Needs about 44 bytes a vertex besides the
-/// mesh. The same log for the same input, whatever the threads; O(n log n).
+/// mesh and its positions, and what the metric keeps. The same log for the same input, whatever the
+/// threads; O(n log n).
 /// Precondition: positions.size() == mesh.vertex_slots(), all finite.
-Decimation decimate(HalfEdgeMesh mesh, std::span<const Vec3d> positions,
+Decimation decimate(HalfEdgeMesh mesh, std::vector<Vec3d> positions,
                     const DecimateOptions& options = {});
 
 }  // namespace pmesh

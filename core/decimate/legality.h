@@ -7,6 +7,9 @@
 
 namespace pmesh {
 
+/// Tests that are given up, one after the other, if a target cannot be had otherwise.
+enum class Relaxation : std::uint8_t { planarity, fold_over };
+
 /// The border rule: a border vertex may only move along its border.
 inline bool may_move_to(const OneRing& ring, std::uint32_t head) {
   return !ring.border || head == 0 || head + 1 == ring.neighbours;
@@ -19,10 +22,13 @@ inline bool may_move_to(const OneRing& ring, std::uint32_t head) {
 /// Reads only what gather_neighbours fills. Precondition: may_move_to(ring, head).
 bool link_condition_holds(const HalfEdgeMesh& mesh, const OneRing& ring, std::uint32_t head);
 
-/// Whether a face turns by more than 90 degrees. Faces without area do not count.
-inline bool folds_over(const MovedFaces& moved) {
+/// Whether a face of `ring` turns by more than 90 degrees, or loses its area, after which nothing
+/// would know how it lay. Faces without area to begin with do not count.
+inline bool folds_over(const OneRing& ring, const MovedFaces& moved) {
   for (std::uint32_t k = 0; k < moved.count; ++k) {
+    if (moved.cosine[k] > 0) continue;
     if (moved.cosine[k] < 0) return true;
+    if (ring.has_area(moved.first + k) && !moved.has_area(k)) return true;
   }
   return false;
 }

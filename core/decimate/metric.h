@@ -1,5 +1,8 @@
-// The seam between the decimation engine and the published metrics: a concept inside the engine,
-// so that no candidate costs an indirect call, and one table outside (core/metrics/table.h).
+// The seam between the decimation engine and the published metrics: concepts inside the engine, so
+// that no candidate costs an indirect call, and one table outside (core/metrics/table.h). This file
+// has the metrics that collapse half-edges and leave every vertex where it is; core/decimate/
+// edge_star.h those that collapse edges and place the merged vertex, core/decimate/triangle_star.h
+// those that collapse triangles.
 //
 // The engine gathers the geometry of every candidate once. A metric reads it and answers; it never
 // touches the heap, the mesh or the codec.
@@ -9,12 +12,15 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "core/base/ids.h"
 #include "core/base/vec3.h"
+#include "core/decimate/metric_frame.h"
 #include "core/mesh/half_edge_mesh.h"
 
 namespace pmesh {
@@ -34,6 +40,7 @@ struct OneRing {
   using Row = std::array<double, kCapacity>;
 
   VertexId centre;
+  Vec3d origin;  ///< The centre's position in the unit frame.
   std::uint32_t neighbours = 0;
   std::uint32_t faces = 0;
   bool border = false;  ///< The centre lies on a border.
@@ -48,6 +55,18 @@ struct OneRing {
   Vec3d position(std::uint32_t neighbour) const {
     return {x[neighbour], y[neighbour], z[neighbour]};
   }
+
+  bool has_area(std::uint32_t face) const {
+    return nx[face] != 0 || ny[face] != 0 || nz[face] != 0;
+  }
+
+  /// Which neighbour `v` is. Precondition: it is one.
+  std::uint32_t index_of(VertexId v) const {
+    std::uint32_t i = 0;
+    while (ids[i] != v) ++i;
+    assert(i < neighbours);
+    return i;
+  }
 };
 
 /// The faces of a one-ring that survive a collapse of its centre, as they are after it. Moved face
@@ -61,30 +80,42 @@ struct MovedFaces {
   Row nx{}, ny{}, nz{};  ///< Unit normals; zero for a face without area.
   Row area{};
   Row cosine{};  ///< Of the angle between the normals before and after; 0 if one has none.
+
+  bool has_area(std::uint32_t face) const {
+    return nx[face] != 0 || ny[face] != 0 || nz[face] != 0;
+  }
 };
 
-/// Where a metric may put the kept vertex.
-enum class Placement : std::uint8_t {
-  subset,  ///< It stays where it is: the positions of every LOD are a subset of the input's.
+/// What a metric needs to know of a candidate half-edge collapse.
+enum class RingGeometry : std::uint8_t {
+  neighbours,   ///< The ring without its faces.
+  faces,        ///< The whole ring.
+  moved_faces,  ///< The ring, and its faces as they are after the collapse.
 };
 
-/// What a metric says about a candidate.
-struct Proposal {
-  double cost = std::numeric_limits<double>::infinity();  ///< Infinite: refused.
-};
+/// A cost that refuses the candidate.
+inline constexpr double kRefused = std::numeric_limits<double>::infinity();
 
-/// A published metric. Copyable; const members are called from several threads at the same time.
+/// A metric that collapses half-edges; positions of every LOD are a subset of the input's.
+/// Copyable; const members are called from several threads at the same time.
 template <class M>
-concept Metric = requires(M metric, const M& const_metric, const OneRing& ring,
-                          const MovedFaces& moved, std::uint32_t head, double cost, double popped,
-                          VertexId v) {
-  { M::kPlacement } -> std::convertible_to<Placement>;
-  /// The cost of collapsing the ring's centre into its neighbour `head`. The engine has checked
-  /// the border rules, and refuses fold-overs and broken links itself.
-  { const_metric.propose(ring, head, moved) } -> std::same_as<Proposal>;
+concept HalfEdgeMetric = requires(M metric, const M& const_metric, const HalfEdgeMesh& mesh,
+                                  std::span<const Vec3d> positions, const MetricFrame& frame,
+                                  const OneRing& ring, const MovedFaces& moved, std::uint32_t head,
+                                  double cost, double popped, VertexId v) {
+  { M::kGeometry } -> std::convertible_to<RingGeometry>;
+  /// Makes the per-vertex state of a mesh, before anything else is asked.
+  { metric.start(mesh, positions, frame) } -> std::same_as<void>;
+  /// What all candidates of the ring's centre have in common.
+  { const_metric.prepare(ring) } -> std::same_as<typename M::Prepared>;
+  /// The cost, at least 0, of collapsing the ring's centre into its neighbour `head`. The
+  /// engine has checked the border rules, and refuses fold-overs and broken links itself.
+  /// `moved` is there for RingGeometry::moved_faces only.
+  { const_metric.cost(ring, const_metric.prepare(ring), head, moved) } -> std::same_as<double>;
   /// The key in the queue of a centre whose best candidate costs `cost`; the least is popped
-  /// first. `popped` is the key of the collapse that made this evaluation necessary, 0 at first.
-  { const_metric.priority(ring, cost, popped) } -> std::same_as<double>;
+  /// first. `popped` is the key of the collapse that made this evaluation necessary, 0 at
+  /// first.
+  { const_metric.priority(const_metric.prepare(ring), cost, popped) } -> std::same_as<double>;
   /// Folds the per-vertex state of the removed into the kept vertex, once the mesh has changed.
   { metric.fold(v, v) } -> std::same_as<void>;
 };

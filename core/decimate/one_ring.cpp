@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/box.h"
-
 namespace pmesh {
 namespace {
 
@@ -41,16 +39,6 @@ void repeat(OneRing::Row& row, std::uint32_t period) {
 
 }  // namespace
 
-double unit_scale(std::span<const Vec3d> positions) {
-  if (positions.empty()) return 1;
-  const Box<double> box = bounding_box(positions);
-  const double side = box.longest_side();
-  const Vec3d diagonal = box.high - box.low;  // in units of the side it can be squared
-  const Vec3d relative{diagonal.x / side, diagonal.y / side, diagonal.z / side};
-  const double scale = 1 / (side * length(relative));
-  return std::isfinite(scale) && scale > 0 ? scale : 1;
-}
-
 bool gather_neighbours(const HalfEdgeMesh& mesh, VertexId v, OneRing& ring) {
   const HalfEdgeId first = mesh.outgoing(v);
   HalfEdgeId last, h = first;
@@ -69,10 +57,11 @@ bool gather_neighbours(const HalfEdgeMesh& mesh, VertexId v, OneRing& ring) {
   return true;
 }
 
-void gather_geometry(std::span<const Vec3d> positions, double scale, const BorderLoops& borders,
-                     OneRing& ring) {
-  const Vec3d centre = positions[ring.centre.value];
-  const auto relative = [&](VertexId v) { return scale * (positions[v.value] - centre); };
+void gather_positions(const WorkingMesh& work, OneRing& ring) {
+  const Vec3d centre = work.position(ring.centre);
+  const double scale = work.frame().scale;
+  const auto relative = [&](VertexId v) { return scale * (work.position(v) - centre); };
+  ring.origin = work.frame().to_unit(centre);
   for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
     const Vec3d p = relative(ring.ids[i]);
     ring.x[i] = p.x;
@@ -80,11 +69,14 @@ void gather_geometry(std::span<const Vec3d> positions, double scale, const Borde
     ring.z[i] = p.z;
   }
   if (ring.border) {
-    ring.beyond_first = relative(borders.next(ring.ids[0]));
-    ring.beyond_last = relative(borders.previous(ring.ids[ring.neighbours - 1]));
+    ring.beyond_first = relative(work.borders().next(ring.ids[0]));
+    ring.beyond_last = relative(work.borders().previous(ring.ids[ring.neighbours - 1]));
   } else {
     for (OneRing::Row* row : {&ring.x, &ring.y, &ring.z}) repeat(*row, ring.faces);
   }
+}
+
+void gather_faces(OneRing& ring) {
   make_faces(ring.x.data(), ring.y.data(), ring.z.data(), {}, ring.faces, ring.nx.data(),
              ring.ny.data(), ring.nz.data(), ring.area.data());
   if (ring.border) return;

@@ -12,14 +12,15 @@ Vec3d unit(Vec3d v) {
 
 }  // namespace
 
-Proposal Melod::propose(const OneRing& ring, std::uint32_t head, const MovedFaces& moved) const {
+double Melod::cost(const OneRing& ring, Prepared, std::uint32_t head,
+                   const MovedFaces& moved) const {
   double cost = 0;
   const double* const area = ring.area.data() + moved.first;
   for (std::uint32_t k = 0; k < moved.count; ++k) {
     cost += 0.5 * (area[k] + moved.area[k]) * (1 - moved.cosine[k]);
   }
   if (ring.border) cost += lambda_ * border_turn(ring, head) * length(ring.position(head));
-  return {cost};
+  return cost;
 }
 
 double Melod::importance(const OneRing& ring) {

@@ -3,13 +3,16 @@
 // docs/decisions/0004-melod-as-published.md for what the paper leaves open.
 #pragma once
 
+#include <string_view>
+
 #include "core/decimate/metric.h"
 
 namespace pmesh {
 
 class Melod {
  public:
-  static constexpr Placement kPlacement = Placement::subset;
+  static constexpr std::string_view kName = "melod";
+  static constexpr RingGeometry kGeometry = RingGeometry::moved_faces;
   static constexpr double kDefaultLambda = 10;
 
   /// `lambda` weighs the preservation of borders; the paper uses 1 to 50.
@@ -17,16 +20,22 @@ class Melod {
 
   double lambda() const { return lambda_; }
 
+  struct Prepared {
+    double importance;
+  };
+  Prepared prepare(const OneRing& ring) const { return {importance(ring)}; }
+
   /// The cost of a half-edge collapse (section 3): the sum over the moved faces of
   /// 0.5 (area + area') (1 - n . n'), and along a border lambda phi |v1 - v2| on top.
-  Proposal propose(const OneRing& ring, std::uint32_t head, const MovedFaces& moved) const;
+  double cost(const OneRing& ring, Prepared, std::uint32_t head, const MovedFaces& moved) const;
 
   /// Section 4, step 3: the greater of the cost and the popped key, times the visual importance.
-  double priority(const OneRing& ring, double cost, double popped) const {
-    return importance(ring) * (cost < popped ? popped : cost);
+  double priority(Prepared centre, double cost, double popped) const {
+    return centre.importance * (cost < popped ? popped : cost);
   }
 
   /// There is no geometric history.
+  void start(const HalfEdgeMesh&, std::span<const Vec3d>, const MetricFrame&) {}
   void fold(VertexId /*removed*/, VertexId /*kept*/) {}
 
   /// The visual importance w = 1 - |k| of the ring's centre, k being the area-weighted mean of its
@@ -41,6 +50,6 @@ class Melod {
   double lambda_;
 };
 
-static_assert(Metric<Melod>);
+static_assert(HalfEdgeMetric<Melod>);
 
 }  // namespace pmesh

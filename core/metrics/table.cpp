@@ -1,8 +1,11 @@
 #include "core/metrics/table.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace pmesh {
 namespace {
@@ -12,61 +15,151 @@ using std::string_view;
 
 Error usage(string message) { return {ErrorCode::usage, std::move(message)}; }
 
-// Calls set(name, value) for each of "name=value,name=value"; set says whether it knows the name.
-template <class Set>
-Status parse_parameters(string_view text, Set set) {
-  while (!text.empty()) {
-    const string_view item = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(text.size(), item.size() + 1));
-    const std::size_t equals = item.find('=');
-    const string_view name = item.substr(0, equals);
-    const string_view digits = equals == string_view::npos ? "" : item.substr(equals + 1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.begin(), digits.end(), value);
-    if (error != std::errc() || end != digits.end() || !std::isfinite(value)) {
-      return usage("metric parameter '" + string(item) + "': expected name=number");
+constexpr std::array<MetricParameter, 3> kParameters = {{
+    {"lambda", ParameterKind::number, "", "melod: weight of borders, 0 or more (default 10)"},
+    {"placement", ParameterKind::choice, "subset|solved",
+     "qem: whether a merged vertex stays at one end of its edge (subset, the default) or goes "
+     "where "
+     "the cost is least (solved)"},
+    {"planarity", ParameterKind::number, "",
+     "triangle: least angle between a triangle and those around it, 0 to 180 degrees (default 165)"},
+}};
+
+constexpr std::array<string_view, 1> kMelodParameters = {"lambda"};
+constexpr std::array<string_view, 1> kQemParameters = {"placement"};
+constexpr std::array<string_view, 1> kTriangleParameters = {"planarity"};
+
+constexpr std::array<MetricRow, 5> kTable = {{
+    {"memoryless-qem", "quadrics of the faces at the moment, vertices a subset of the input's", {}},
+    {"melod", "visual importance and face rotation (Hussain, Okada, Niijima 2004)",
+     kMelodParameters},
+    {"qem", "quadric error metric (Garland, Heckbert 1997)", kQemParameters},
+    {"memoryless", "swept volume, volume preserved (Lindstrom, Turk 1998)", {}},
+    {"triangle", "triangles to their centroid (Ali, Rahmat, Khalid, Ng 2011)", kTriangleParameters},
+}};
+
+// Parameters by name, as text.
+class ParameterText {
+ public:
+  // Fails if an item is malformed or not one of `row`'s.
+  static Result<ParameterText> parse(string_view text, const MetricRow& row) {
+    ParameterText parsed;
+    while (!text.empty()) {
+      const string_view item = text.substr(0, text.find(','));
+      text.remove_prefix(std::min(text.size(), item.size() + 1));
+      const std::size_t equals = item.find('=');
+      const string_view name = item.substr(0, equals);
+      if (std::find(row.parameters.begin(), row.parameters.end(), name) == row.parameters.end()) {
+        return usage("metric " + string(row.name) + " has no parameter '" + string(name) + "'");
+      }
+      parsed.items_.push_back(
+          {name, equals == string_view::npos ? string_view() : item.substr(equals + 1)});
     }
-    if (!set(name, value)) return usage("unknown metric parameter '" + string(name) + "'");
+    return parsed;
   }
-  return {};
+
+  bool has(string_view name) const { return find(name).has_value(); }
+
+  // The number of that name, `fallback` if it is not given.
+  Result<double> number(string_view name, double fallback, double least, double most) const {
+    const std::optional<string_view> text = find(name);
+    if (!text) return fallback;
+    double value = 0;
+    const auto [end, error] = std::from_chars(text->begin(), text->end(), value);
+    if (error != std::errc() || end != text->end() || !(value >= least && value <= most)) {
+      return usage("metric parameter '" + string(name) + "': expected a number from " +
+                   shortest(least) + " to " + shortest(most));
+    }
+    return value;
+  }
+
+  // Which of the two values is given; `fallback` if none is.
+  Result<bool> is_first(string_view name, string_view first, string_view second,
+                        bool fallback) const {
+    const std::optional<string_view> text = find(name);
+    if (!text) return fallback;
+    if (*text != first && *text != second) {
+      return usage("metric parameter '" + string(name) + "': expected " + string(first) + " or " +
+                   string(second));
+    }
+    return *text == first;
+  }
+
+  static string shortest(double value) {
+    std::array<char, 32> digits{};
+    const auto result = std::to_chars(digits.begin(), digits.end(), value);
+    return {digits.begin(), result.ptr};
+  }
+
+ private:
+  struct Item {
+    string_view name, value;
+  };
+
+  std::optional<string_view> find(string_view name) const {
+    for (const Item& item : items_) {
+      if (item.name == name) return item.value;
+    }
+    return std::nullopt;
+  }
+
+  std::vector<Item> items_;
+};
+
+Result<AnyMetric> make_melod(const ParameterText& text) {
+  const Result<double> lambda = text.number("lambda", Melod::kDefaultLambda, 0, 1e6);
+  if (!lambda) return lambda.error();
+  return AnyMetric(Melod(*lambda));
 }
 
-Result<AnyMetric> make_melod(string_view parameters) {
-  double lambda = Melod::kDefaultLambda;
-  const Status parsed = parse_parameters(parameters, [&](string_view name, double value) {
-    if (name == "lambda") lambda = value;
-    return name == "lambda";
-  });
-  if (!parsed) return parsed.error();
-  if (lambda < 0) return usage("metric parameter 'lambda' must not be negative");
-  return AnyMetric(Melod(lambda));
+Result<AnyMetric> make_qem(const ParameterText& text) {
+  const Result<bool> subset = text.is_first("placement", "subset", "solved", true);
+  if (!subset) return subset.error();
+  return *subset ? AnyMetric(QemSubset()) : AnyMetric(QemSolved());
+}
+
+Result<AnyMetric> make_triangle(const ParameterText& text) {
+  const Result<double> planarity =
+      text.number("planarity", TriangleCollapse::kDefaultPlanarity, 0, 180);
+  if (!planarity) return planarity.error();
+  return AnyMetric(TriangleCollapse(*planarity));
 }
 
 string parameters_of(const Melod& melod) {
-  std::array<char, 32> digits{};
-  const auto result = std::to_chars(digits.begin(), digits.end(), melod.lambda());
-  return "lambda=" + string(digits.begin(), result.ptr);
+  return "lambda=" + ParameterText::shortest(melod.lambda());
 }
-
-// In the order of AnyMetric's alternatives.
-constexpr std::array<MetricRow, std::variant_size_v<AnyMetric>> kTable = {{
-    {"melod", "visual importance and face rotation (Hussain, Okada, Niijima 2004)", make_melod},
-}};
+string parameters_of(const QemSubset&) { return "placement=subset"; }
+string parameters_of(const QemSolved&) { return "placement=solved"; }
+string parameters_of(const TriangleCollapse& triangle) {
+  return "planarity=" + ParameterText::shortest(triangle.planarity());
+}
+string parameters_of(const Memoryless&) { return ""; }
+string parameters_of(const MemorylessQem&) { return ""; }
 
 }  // namespace
 
 std::span<const MetricRow> metric_table() { return kTable; }
+std::span<const MetricParameter> parameter_table() { return kParameters; }
 
 Result<AnyMetric> make_metric(string_view name, string_view parameters) {
   string known;
   for (const MetricRow& row : kTable) {
-    if (row.name == name) return row.make(parameters);
     known += (known.empty() ? "" : ", ") + string(row.name);
+    if (row.name != name) continue;
+    const Result<ParameterText> text = ParameterText::parse(parameters, row);
+    if (!text) return text.error();
+    if (name == "melod") return make_melod(*text);
+    if (name == "triangle") return make_triangle(*text);
+    if (name == "qem") return make_qem(*text);
+    if (name == "memoryless") return AnyMetric(Memoryless());
+    return AnyMetric(MemorylessQem());
   }
   return usage("unknown metric '" + string(name) + "' (known: " + known + ")");
 }
 
-string_view metric_name(const AnyMetric& metric) { return kTable[metric.index()].name; }
+string_view metric_name(const AnyMetric& metric) {
+  return std::visit([](const auto& m) { return m.kName; }, metric);
+}
 
 string metric_parameters(const AnyMetric& metric) {
   return std::visit([](const auto& m) { return parameters_of(m); }, metric);

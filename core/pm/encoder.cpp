@@ -33,13 +33,14 @@ class ChunkWriter {
   /// Appends chunks to `body` and their rows to `rows`; false as soon as there are more than
   /// `most_rows`.
   bool write(std::size_t largest, std::size_t most_rows, std::vector<ChunkRow>& rows, Bytes& body) {
-    const auto& collapses = input_.log.collapses;
+    const std::size_t step = input_.log.collapses_per_step;
+    const std::size_t step_bytes = step * header_.max_split_bytes();
     std::size_t target = kFirstChunkBytes;
-    for (auto next = collapses.rbegin(); next != collapses.rend();) {
+    for (std::size_t left = input_.log.collapses.size(); left > 0;) {
       if (rows.size() == most_rows) return false;
       SplitEncoder chunk(header_);
-      while (next != collapses.rend() && chunk.byte_count() + kMaxSplitBytes <= target) {
-        put_split(*next++, chunk);
+      while (left > 0 && chunk.byte_count() + step_bytes <= target) {
+        for (std::size_t k = 0; k < step; ++k) put_split(--left, chunk);
       }
       rows.push_back(finish(std::move(chunk), body));
       target = std::min(target + target / 2, largest);
@@ -47,16 +48,26 @@ class ChunkWriter {
     return true;
   }
 
+  /// Where the vertices of the finest LOD written lie.
+  std::span<const Vec3i> positions() const { return mesh_.positions(); }
+
  private:
   VertexId file_id(VertexId original) const {
     return original.valid() ? file_ids_[original.value] : original;
   }
 
-  void put_split(const HalfEdgeCollapse& collapse, SplitEncoder& chunk) {
+  Vec3i relocation(std::size_t index) const {
+    if (!header_.has_relocations) return {};
+    const VertexId kept = file_id(input_.log.collapses[index].kept);
+    return input_.lattice.quantise(input_.log.kept_before[index]) - mesh_.positions()[kept.value];
+  }
+
+  void put_split(std::size_t index, SplitEncoder& chunk) {
+    const HalfEdgeCollapse& collapse = input_.log.collapses[index];
     const HalfEdgeCollapse renamed{VertexId(mesh_.vertex_count()), file_id(collapse.kept),
                                    file_id(collapse.left), file_id(collapse.right)};
     const VertexSplit split{mesh_.connectivity().find_site(renamed),
-                            input_.positions[collapse.removed.value]};
+                            input_.positions[collapse.removed.value], relocation(index)};
     chunk.put(split, mesh_);
     [[maybe_unused]] const Status applied = mesh_.append(split);
     assert(applied.ok());
@@ -98,9 +109,7 @@ FileHeader describe(const EncodeInput& input, const EncodedBase& base) {
     header.faces += static_cast<std::uint64_t>(collapse.removed_faces());
     header.has_borders |= collapse.removed_faces() == 1;
   }
-  const auto box = bounding_box(input.positions);
-  header.box_low = box.low;
-  header.box_high = box.high;
+  header.has_relocations = !input.log.kept_before.empty();
   return header;
 }
 
@@ -111,9 +120,28 @@ std::size_t most_rows(const FileIndex& index) {
   return (kMaxPrologueBytes - header) / (prologue_size(one_row) - header);
 }
 
+// Base and chunks; fills in the index's rows, and its box from the mesh that they end in.
+Bytes write_body(const EncodeInput& input, const EncodedBase& base,
+                 const std::vector<VertexId>& file_ids, FileIndex& index) {
+  const std::size_t rows_that_fit = most_rows(index);
+  for (std::size_t largest = kLargestChunkBytes;; largest *= 2) {
+    Bytes body = base.bytes;
+    index.chunks.clear();
+    ChunkWriter writer(input, index.header, base.decoded, file_ids);
+    if (!writer.write(largest, rows_that_fit, index.chunks, body)) continue;
+    const Box<std::int32_t> box = bounding_box(writer.positions());
+    index.header.box_low = box.low;
+    index.header.box_high = box.high;
+    return body;
+  }
+}
+
 }  // namespace
 
 Result<Bytes> encode(const EncodeInput& input) {
+  [[maybe_unused]] const CollapseLog& log = input.log;
+  assert(log.kept_before.empty() || log.kept_before.size() == log.collapses.size());
+  assert(log.collapses.size() % log.collapses_per_step == 0);
   LiveMesh live = input.base.live();
   LatticeMesh mesh;
   for (const VertexId v : live.vertices) mesh.positions.push_back(input.positions[v.value]);
@@ -127,14 +155,7 @@ Result<Bytes> encode(const EncodeInput& input) {
 
   FileIndex index;
   index.header = describe(input, *base);
-  const std::size_t rows_that_fit = most_rows(index);
-  Bytes body;
-  for (std::size_t largest = kLargestChunkBytes;; largest *= 2) {
-    body = base->bytes;
-    index.chunks.clear();
-    ChunkWriter writer(input, index.header, base->decoded, file_ids);
-    if (writer.write(largest, rows_that_fit, index.chunks, body)) break;
-  }
+  const Bytes body = write_body(input, *base, file_ids, index);
 
   const Bytes unhashed = write_prologue(index);
   index.header.content_hash = hash_prologue(unhashed);

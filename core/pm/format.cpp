@@ -17,11 +17,19 @@ constexpr std::uint8_t kBaseCodecDraco = 1;
 constexpr std::uint8_t kGraphLinear = 0;
 constexpr std::uint8_t kSplitCodecPlain = 0;
 constexpr std::uint16_t kFlagBorders = 1u << 0;
-// Bit 1 is reserved for relocations, bit 3 for new components in chunks.
+constexpr std::uint16_t kFlagRelocations = 1u << 1;
 constexpr std::uint16_t kFlagErrorsMeasured = 1u << 2;
+// Bit 3 is reserved for new components in chunks.
+constexpr std::uint16_t kKnownFlags = kFlagBorders | kFlagRelocations | kFlagErrorsMeasured;
 
 // Bytes of prologue that tell its whole length: magic to chunk count.
 constexpr std::size_t kSizingBytes = 20;
+
+std::uint16_t flags_of(const FileHeader& header) {
+  return static_cast<std::uint16_t>((header.has_borders ? kFlagBorders : 0) |
+                                    (header.has_relocations ? kFlagRelocations : 0) |
+                                    (header.errors_measured ? kFlagErrorsMeasured : 0));
+}
 
 std::size_t header_size(const FileHeader& header) {
   return kFixedHeaderBytes + 3 + header.metric.size() + header.parameters.size() +
@@ -71,8 +79,7 @@ void put_header(ByteWriter& writer, const FileIndex& index) {
   writer.put(kFormatVersion);
   writer.put(static_cast<std::uint16_t>(header_size(h)));
   writer.put(static_cast<std::uint16_t>(kRowBytes));
-  writer.put(static_cast<std::uint16_t>((h.has_borders ? kFlagBorders : 0) |
-                                        (h.errors_measured ? kFlagErrorsMeasured : 0)));
+  writer.put(flags_of(h));
   writer.put(static_cast<std::uint32_t>(index.chunks.size()));
   writer.put(std::uint32_t{0});  // CRC, filled in when the rest stands
   writer.put(ByteView(h.content_hash));
@@ -152,14 +159,13 @@ Result<Layout> parse_layout(ByteReader& reader) {
       layout.prologue_bytes() > kMaxPrologueBytes) {
     return damaged("header: its sizes are out of range");
   }
-  if ((layout.flags & ~(kFlagBorders | kFlagErrorsMeasured)) != 0) {
-    return damaged("header: unknown flags");
-  }
+  if ((layout.flags & ~kKnownFlags) != 0) return damaged("header: unknown flags");
   return layout;
 }
 
 Status parse_header(ByteReader& reader, const Layout& layout, FileHeader& h) {
   h.has_borders = (layout.flags & kFlagBorders) != 0;
+  h.has_relocations = (layout.flags & kFlagRelocations) != 0;
   h.errors_measured = (layout.flags & kFlagErrorsMeasured) != 0;
   reader.get<std::uint32_t>();  // CRC, checked by the caller
   const ByteView hash = reader.take(h.content_hash.size());
@@ -249,7 +255,7 @@ Status check_rows(const FileIndex& index) {
     }
     const std::uint64_t splits = row.vertices - vertices, added = row.faces - faces;
     if (added > 2 * splits || (h.has_borders ? added < splits : added != 2 * splits) ||
-        splits > std::uint64_t{8} * row.bytes || row.bytes > kMaxSplitBytes * splits) {
+        splits > std::uint64_t{8} * row.bytes || row.bytes > h.max_split_bytes() * splits) {
       return damaged(where + ": impossible counts");
     }
     if (h.errors_measured && !(row.max_error >= 0 && row.rms_error >= 0)) {

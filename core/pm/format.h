@@ -34,6 +34,7 @@ inline constexpr std::uint64_t kMaxBaseFacesPerByte = 64;
 inline constexpr std::uint64_t kMaxBaseBytesPerFace = 64;
 inline constexpr std::uint64_t kMaxBaseBytesOverhead = 4096;
 inline constexpr std::uint64_t kMaxSplitBytes = 32;
+inline constexpr std::uint64_t kMaxRelocatingSplitBytes = 64;
 
 /// The first 16 bytes of SHA-256 over header and index, with this field zero.
 using ContentHash = std::array<std::uint8_t, 16>;
@@ -56,10 +57,22 @@ struct FileHeader {
   Lattice lattice;
   Vec3i box_low, box_high;       ///< The full mesh's bounding box on the lattice.
   bool has_borders = false;      ///< Border splits may occur.
+  bool has_relocations = false;  ///< Splits may move the vertex that they keep.
   bool errors_measured = false;  ///< The rows' max_error and rms_error hold.
   std::string metric;            ///< Decimation metric by name, e.g. "melod".
   std::string parameters;        ///< Its parameters, e.g. "lambda=10".
   std::string unit;              ///< Unit of length, e.g. "m"; empty if not known.
+
+  /// No split of this file takes more.
+  std::uint64_t max_split_bytes() const {
+    return has_relocations ? kMaxRelocatingSplitBytes : kMaxSplitBytes;
+  }
+
+  /// The diagonal of the full mesh's bounding box, in the mesh's units.
+  double box_diagonal() const {
+    const Vec3i size = box_high - box_low;
+    return lattice.step * length(Vec3d{double(size.x), double(size.y), double(size.z)});
+  }
 };
 
 /// One chunk of vertex splits, and the mesh after it.

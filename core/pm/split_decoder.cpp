@@ -14,44 +14,55 @@ class SplitDecoder {
   SplitDecoder(ByteView chunk, const FileHeader& header)
       : bits_(chunk),
         header_(header),
-        differences_{RiceModel(header.lattice.bits), RiceModel(header.lattice.bits),
-                     RiceModel(header.lattice.bits)} {}
+        added_(make_point_model(header.lattice.bits)),
+        kept_(make_point_model(header.lattice.bits)) {}
 
   Result<VertexSplit> next(const RefinableMesh& mesh) {
-    VertexSplit split;
-    split.site.kind = get_kind();
-    const std::uint32_t half_edges = 3 * mesh.face_count();
-    split.site.half_edge = HalfEdgeId(bits_.get(bits_for(half_edges)));
-    if (split.site.half_edge.value >= half_edges) {
-      return bad_input("the half-edge does not exist");
-    }
-    const std::uint32_t moved =
-        get_exp_golomb() + (split.site.kind == SplitKind::interior ? 1u : 0u);
-    if (moved > kMaxMovedFaces) return bad_input("more than 255 moved faces");
-    split.site.moved_faces = static_cast<std::uint16_t>(moved);
+    const Result<SplitSite> site = get_site(3 * mesh.face_count());
+    if (!site) return site.error();
+    VertexSplit split{*site, {}};
+    const Vec3i kept = mesh.positions()[kept_vertex(mesh.connectivity(), *site).value];
+    if (Status placed = get_positions(kept, split); !placed) return placed.error();
     if (bits_.failed()) return bad_input("the chunk ends inside a split");
-
-    const VertexId parent = kept_vertex(mesh.connectivity(), split.site);
-    const Result<Vec3i> position = get_position(mesh.positions()[parent.value]);
-    if (!position) return position.error();
-    split.position = *position;
     return split;
   }
 
   bool at_end() const { return bits_.at_end(); }
 
  private:
-  Result<Vec3i> get_position(Vec3i parent) {
-    std::array<std::int32_t, 3> at = {parent.x, parent.y, parent.z};
+  Result<SplitSite> get_site(std::uint32_t half_edges) {
+    SplitSite site;
+    site.kind = get_kind();
+    site.half_edge = HalfEdgeId(bits_.get(bits_for(half_edges)));
+    if (site.half_edge.value >= half_edges) return bad_input("the half-edge does not exist");
+    const std::uint32_t moved = get_exp_golomb() + (site.kind == SplitKind::interior ? 1u : 0u);
+    if (moved > kMaxMovedFaces) return bad_input("more than 255 moved faces");
+    site.moved_faces = static_cast<std::uint16_t>(moved);
+    if (bits_.failed()) return bad_input("the chunk ends inside a split");
+    return site;
+  }
+
+  Status get_positions(Vec3i kept, VertexSplit& split) {
+    const Result<Vec3i> added = get_point(kept, added_);
+    if (!added) return prefixed("added vertex", added.error());
+    split.position = *added;
+    if (!header_.has_relocations) return {};
+    const Result<Vec3i> moved = get_point(predicted_kept(kept, *added), kept_);
+    if (!moved) return prefixed("kept vertex", moved.error());
+    split.relocation = *moved - kept;
+    return {};
+  }
+
+  Result<Vec3i> get_point(Vec3i predicted, PointModel& model) {
+    std::array<std::int32_t, 3> at = {predicted.x, predicted.y, predicted.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::int64_t difference = unzigzag(get_rice(differences_[axis]));
-      const std::int64_t coordinate = at[axis] + difference;
+      const std::int64_t residual = unzigzag(get_rice(model[axis]));
+      const std::int64_t coordinate = at[axis] + residual;
       if (coordinate < 0 || coordinate >> header_.lattice.bits != 0) {
-        return bad_input("the new vertex lies off the lattice");
+        return bad_input("off the lattice");
       }
       at[axis] = static_cast<std::int32_t>(coordinate);
     }
-    if (bits_.failed()) return bad_input("the chunk ends inside a split");
     return Vec3i{at[0], at[1], at[2]};
   }
 
@@ -78,7 +89,7 @@ class SplitDecoder {
 
   BitReader bits_;
   const FileHeader& header_;
-  std::array<RiceModel, 3> differences_;
+  PointModel added_, kept_;
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Writes vertex splits into a chunk, the inverse of core/pm/split_decoder.h.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "core/base/bits.h"
@@ -25,12 +24,13 @@ class SplitEncoder {
   Bytes finish() && { return std::move(bits_).finish(); }
 
  private:
+  void put_point(Vec3i point, Vec3i predicted, PointModel& model);
   void put_exp_golomb(std::uint32_t value);
   void put_rice(std::uint32_t value, RiceModel& model);
 
   BitWriter bits_;
   const FileHeader& header_;
-  std::array<RiceModel, 3> differences_;
+  PointModel added_, kept_;
 };
 
 }  // namespace pmesh

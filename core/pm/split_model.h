@@ -3,12 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 
 #include "core/base/vec3.h"
-#include "core/mesh/half_edge_mesh.h"
-#include "core/refine/refinable_mesh.h"
 
 namespace pmesh {
 
@@ -36,6 +35,17 @@ class RiceModel {
   std::uint32_t scaled_mean_;
 };
 
+/// A model for each axis.
+using PointModel = std::array<RiceModel, 3>;
+inline PointModel make_point_model(int lattice_bits) {
+  const RiceModel model(lattice_bits);
+  return {model, model, model};
+}
+
+/// Where a kept vertex is expected after its split: merged vertices lie near the middle of their
+/// edge, so as far from there as the added vertex, on the other side.
+inline Vec3i predicted_kept(Vec3i merged, Vec3i added) { return 2 * merged - added; }
+
 /// A quotient of this many is followed by the value itself in 32 bits.
 inline constexpr std::uint32_t kRiceEscape = 24;
 
@@ -45,12 +55,6 @@ inline std::uint32_t zigzag(std::int32_t value) {
 }
 inline std::int32_t unzigzag(std::uint32_t value) {
   return static_cast<std::int32_t>(value >> 1) ^ -static_cast<std::int32_t>(value & 1);
-}
-
-/// The vertex that a split at `site` keeps: the parent, whose position predicts the new one's.
-inline VertexId kept_vertex(const HalfEdgeMesh& mesh, const SplitSite& site) {
-  return site.kind == SplitKind::border_last ? mesh.target(site.half_edge)
-                                             : mesh.origin(site.half_edge);
 }
 
 }  // namespace pmesh

@@ -10,6 +10,7 @@
 #include "core/pm/encoder.h"
 #include "core/pm/format.h"
 #include "core/precompute/quantise.h"
+#include "core/precompute/sort_spatially.h"
 
 namespace pmesh {
 namespace {
@@ -40,6 +41,7 @@ Result<IndexedMesh> import_and_clean(const PrecomputeOptions& options,
   report.cleaned = cleaned.report;
   report.faces = cleaned.mesh.triangles.size();
   report.vertices = cleaned.mesh.positions.size();
+  sort_spatially(cleaned.mesh, options.threads);
   return std::move(cleaned.mesh);
 }
 
@@ -64,6 +66,16 @@ Result<Decimation> decimate_mesh(const IndexedMesh& mesh, const AnyMetric& metri
   return result;
 }
 
+// Over every position that a vertex has at any level: placed vertices may leave the mesh's box.
+Result<Lattice> lattice_over_all(const IndexedMesh& mesh, const Decimation& decimation,
+                                 std::optional<int> bits) {
+  std::vector<Vec3d> reach = mesh.positions;
+  reach.insert(reach.end(), decimation.positions.begin(), decimation.positions.end());
+  const std::vector<Vec3d>& before = decimation.log.kept_before;
+  reach.insert(reach.end(), before.begin(), before.end());
+  return choose_lattice(mesh, reach, bits);
+}
+
 // What the header says of the file just encoded.
 void report_file(const Bytes& file, PrecomputeReport& report) {
   const auto index = parse_prologue(file);
@@ -75,23 +87,27 @@ void report_file(const Bytes& file, PrecomputeReport& report) {
 
 Result<PrecomputeReport> run(const PrecomputeOptions& options, const PrecomputeProgress& progress) {
   PrecomputeReport report;
-  const Result<AnyMetric> metric = make_metric(options.metric);
+  const Result<AnyMetric> metric = make_metric(options.metric, options.metric_parameters);
   if (!metric) return metric.error();
+  report.metric_parameters = metric_parameters(*metric);
   if (Status probed = probe_output(options); !probed) return probed.error();
   Result<IndexedMesh> mesh = import_and_clean(options, progress, report);
   if (!mesh) return mesh.error();
-  const Result<Lattice> lattice = choose_lattice(*mesh, options.lattice_bits);
-  if (!lattice) return prefixed(options.input, lattice.error());
-  report.lattice = *lattice;
-  const std::vector<Vec3i> points = quantise(mesh->positions, *lattice);
+  if (const Result<Lattice> possible = choose_lattice(*mesh, mesh->positions, options.lattice_bits);
+      !possible) {  // known before the long work
+    return prefixed(options.input, possible.error());
+  }
 
   const Result<Decimation> decimation = decimate_mesh(*mesh, *metric, options, progress, report);
   if (!decimation) return decimation.error();
-  *mesh = {};
+  const Result<Lattice> lattice = lattice_over_all(*mesh, *decimation, options.lattice_bits);
+  if (!lattice) return prefixed(options.input, lattice.error());
+  report.lattice = *lattice;
 
   progress(PrecomputePhase::encode, 0);
+  const std::vector<Vec3i> points = quantise(decimation->positions, *lattice);
   const Result<Bytes> file = encode({decimation->mesh, points, decimation->log, *lattice,
-                                     options.metric, metric_parameters(*metric), ""});
+                                     options.metric, report.metric_parameters, ""});
   if (!file) return prefixed(options.output, file.error());
   report_file(*file, report);
 

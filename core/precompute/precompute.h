@@ -10,15 +10,17 @@
 #include "core/files/atomic_file.h"
 #include "core/io/clean.h"
 #include "core/mesh/lattice.h"
+#include "core/metrics/table.h"
 
 namespace pmesh {
 
 struct PrecomputeOptions {
   std::string input;   ///< PLY, OBJ, STL or OFF, by extension.
   std::string output;  ///< Its name must end in .pmesh, which servers and clients go by.
-  std::string metric = "melod";
-  std::optional<int>
-      lattice_bits;                ///< kMinLatticeBits to kMaxLatticeBits; else chosen by the mesh.
+  std::string metric{metric_table().front().name};
+  std::string metric_parameters;  ///< As make_metric() takes them: "lambda=10".
+  /// kMinLatticeBits to kMaxLatticeBits; else chosen by the mesh.
+  std::optional<int> lattice_bits;
   std::uint32_t base_faces = 200;  ///< Decimation stops here, or where topology ends it.
   unsigned threads = 1;            ///< The output does not depend on it.
   Overwrite overwrite = Overwrite::no;
@@ -27,6 +29,7 @@ struct PrecomputeOptions {
 enum class PrecomputePhase : std::uint8_t { import, clean, decimate, encode, write, done };
 
 struct PrecomputeReport {
+  std::string metric_parameters;  ///< All of them, also those left at their defaults.
   std::uint64_t input_faces = 0;  ///< Triangles in the file, polygons cut into fans.
   std::uint64_t input_vertices = 0;
   std::uint64_t polygons = 0;  ///< Faces that had more than three corners.

@@ -32,11 +32,12 @@ std::vector<PlacedTriangle> placed_triangles(const LatticeMesh& mesh) {
 
 }  // namespace
 
-Result<Lattice> choose_lattice(const IndexedMesh& mesh, std::optional<int> bits) {
-  if (bits) return make_lattice(mesh.positions, *bits);
+Result<Lattice> choose_lattice(const IndexedMesh& mesh, const std::vector<Vec3d>& reach,
+                               std::optional<int> bits) {
+  if (bits) return make_lattice(reach, *bits);
   int fewer = default_lattice_bits(mesh);
-  Result<Lattice> lattice = make_lattice(mesh.positions, fewer);
-  while (!lattice && fewer > kMinLatticeBits) lattice = make_lattice(mesh.positions, --fewer);
+  Result<Lattice> lattice = make_lattice(reach, fewer);
+  while (!lattice && fewer > kMinLatticeBits) lattice = make_lattice(reach, --fewer);
   return lattice;
 }
 

@@ -10,10 +10,11 @@
 
 namespace pmesh {
 
-/// The lattice for `mesh`: of `bits` bits if given, else of default_lattice_bits() or as many bits
-/// below that as double precision can tell apart at these coordinates.
-/// Precondition: the mesh has a vertex.
-Result<Lattice> choose_lattice(const IndexedMesh& mesh, std::optional<int> bits);
+/// The lattice over `reach`, all the positions that it is to hold: of `bits` bits if given, else of
+/// default_lattice_bits() of `mesh`, or as many bits below that as double precision can tell apart
+/// at these coordinates. Precondition: neither is empty.
+Result<Lattice> choose_lattice(const IndexedMesh& mesh, const std::vector<Vec3d>& reach,
+                               std::optional<int> bits);
 
 /// The lattice points nearest to `positions`.
 std::vector<Vec3i> quantise(const std::vector<Vec3d>& positions, const Lattice& lattice);

@@ -30,21 +30,42 @@ Status RefinableMesh::append(const VertexSplit& split) {
   if (positions_.size() + 1 >= kNoIndex) {
     return Error{ErrorCode::out_of_resources, "more vertices than 32-bit ids can name"};
   }
-  connectivity_.split(split.site);
   positions_.push_back(split.position);
+  append_relocation(split.relocation);
   sites_.push_back(split.site);
-  ++applied_;
+  refine_once();
   return {};
+}
+
+// Meshes without relocations take no memory for them.
+void RefinableMesh::append_relocation(Vec3i relocation) {
+  if (relocations_.empty()) {
+    if (relocation == Vec3i{}) return;
+    relocations_.reserve(sites_.capacity());
+    relocations_.resize(known_splits());
+  }
+  relocations_.push_back(relocation);
 }
 
 void RefinableMesh::forget_finer() {
   positions_.resize(vertex_count());
   sites_.resize(applied_);
+  if (!relocations_.empty()) relocations_.resize(applied_);
 }
 
-void RefinableMesh::refine_once() { connectivity_.split(sites_[applied_++]); }
+void RefinableMesh::refine_once() {
+  const VertexId kept = connectivity_.split(sites_[applied_]);
+  if (!relocations_.empty()) positions_[kept.value] += relocations_[applied_];
+  ++applied_;
+}
 
-void RefinableMesh::coarsen_once() { connectivity_.undo_split(sites_[--applied_]); }
+void RefinableMesh::coarsen_once() {
+  const SplitSite& site = sites_[--applied_];
+  connectivity_.undo_split(site);
+  if (relocations_.empty()) return;
+  Vec3i& kept = positions_[kept_vertex(connectivity_, site).value];
+  kept = kept - relocations_[applied_];
+}
 
 void RefinableMesh::set_splits(std::uint32_t count) {
   assert(count <= known_splits());

@@ -4,8 +4,8 @@
 // The LOD after k splits uses exactly the ids 0..vertices-1 and 0..faces-1 and is a pure function
 // of file and k, whether it was reached by refining or by coarsening.
 //
-// Memory: about 36 bytes a face. Threads: const members may be called at the same time; the rest
-// need the mesh to themselves.
+// Memory: about 36 bytes a face, 42 if splits relocate. Threads: const members may be called at the
+// same time; the rest need the mesh to themselves.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,20 @@
 
 namespace pmesh {
 
-/// One vertex split: where, and the new vertex's position on the lattice.
+/// One vertex split: where, the new vertex's position on the lattice, and by how much the kept
+/// vertex moves (undone exactly when the split is; zero where metrics leave it in place). All
+/// positions lie in [0, 2^kMaxLatticeBits).
 struct VertexSplit {
   SplitSite site;
   Vec3i position;
+  Vec3i relocation = {};
 };
+
+/// The vertex that a split at `site` of `mesh` keeps.
+inline VertexId kept_vertex(const HalfEdgeMesh& mesh, const SplitSite& site) {
+  return site.kind == SplitKind::border_last ? mesh.target(site.half_edge)
+                                             : mesh.origin(site.half_edge);
+}
 
 class RefinableMesh {
  public:
@@ -71,10 +80,12 @@ class RefinableMesh {
   }
   void refine_once();
   void coarsen_once();
+  void append_relocation(Vec3i relocation);
 
   HalfEdgeMesh connectivity_;
   std::vector<Vec3i> positions_;  // of every known vertex: the finer ones stay while coarse
   std::vector<SplitSite> sites_;
+  std::vector<Vec3i> relocations_;  // by split; empty as long as none relocates
   std::uint32_t applied_ = 0;
 };
 

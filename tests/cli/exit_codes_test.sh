@@ -43,6 +43,10 @@ expect 2 "$pmesh" precompute sphere.obj -o out.pmesh --metric beauty
 expect 2 "$pmesh" extract sphere.pmesh --faces 10 --ratio 0.5 -o out.ply
 expect 2 "$pmesh" extract sphere.pmesh --faces ten -o out.ply
 expect 2 "$pmesh" extract sphere.pmesh --faces 10 -o out.xyz
+for error in -1 nan inf '1%%' 1e999 ''; do
+  expect 2 "$pmesh" extract sphere.pmesh "--error=$error" -o out.ply
+  expect 2 "$pmesh" fetch sphere.pmesh "--error=$error" -o out.ply
+done
 expect 2 "$pmesh" fetch 'tcp://127.0.0.1:1?sphere' -o out.ply
 
 # 2: an output that would replace its own input, whatever --force says, or that has another's name

@@ -39,7 +39,7 @@ precompute() {
 inspect() {
   "$pmesh" info "$file" --json >"$work/info.json"
   check ".file_bytes == $(stat -c %s "$file")" "$work/info.json"
-  check '(.hash | test("^[0-9a-f]{32}$")) and .metric == "melod"' "$work/info.json"
+  check '(.hash | test("^[0-9a-f]{32}$")) and .metric == "memoryless-qem"' "$work/info.json"
   check '[.chunks as $c | range(1; $c | length) | $c[.].offset == $c[. - 1].offset +
     $c[. - 1].bytes] | all' "$work/info.json"
   check '(.chunks | length) == 0 or (.chunks[-1] | .offset + .bytes) == .file_bytes' "$work/info.json"

@@ -58,6 +58,27 @@ TEST(ApplyWish, GivesWholeChunksForBytes) {
   EXPECT_EQ(apply(bytes.c_str(), decoder).faces, sample_index().chunks[1].faces);
 }
 
+TEST(ApplyWish, GivesTheFirstChunkEndNearEnough) {
+  StreamDecoder decoder = decoded();
+  const AppliedWish applied = apply("error=5", decoder);
+  EXPECT_EQ(applied.faces, sample_index().chunks[1].faces);
+  EXPECT_EQ(applied.vertices, sample_index().chunks[1].vertices);
+  EXPECT_TRUE(applied.reached);
+}
+
+TEST(ApplyWish, GivesEverythingForAnErrorOutOfReach) {
+  StreamDecoder decoder = decoded();
+  const AppliedWish applied = apply("error=1e-9%", decoder);
+  EXPECT_EQ(applied.faces, sample_index().header.faces);
+  EXPECT_FALSE(applied.reached);
+}
+
+TEST(ApplyWish, RefusesAnErrorOfAFileWithoutMeasuredErrors) {
+  StreamDecoder decoder(decode_base);
+  ASSERT_TRUE(decoder.feed(test::other_file()).ok());
+  EXPECT_FALSE(apply_wish(wish("error=5"), decoder.index(), decoder.mesh()).ok());
+}
+
 TEST(ApplyWish, GivesTheBaseBelowTheBase) {
   StreamDecoder decoder = decoded();
   for (const char* query : {"faces=1", "vertices=1", "ratio=1e-9", "bytes=1", "faces=0"}) {
@@ -75,6 +96,8 @@ TEST(ApplyWish, SaysIfThePrefixIsTooShortForTheWish) {
   EXPECT_FALSE(beyond.reached);
   EXPECT_EQ(beyond.faces, known);
   EXPECT_FALSE(apply("", decoder).reached);
+  EXPECT_TRUE(apply("error=4", decoder).reached);
+  EXPECT_FALSE(apply("error=3", decoder).reached);
 }
 
 TEST(ApplyWish, DoesNotDependOnTheLodBefore) {
@@ -85,7 +108,8 @@ TEST(ApplyWish, DoesNotDependOnTheLodBefore) {
 }
 
 TEST(ApplyWish, NeverNeedsMoreThanTheBytesItResolvesTo) {
-  for (const char* query : {"faces=100", "faces=999", "vertices=640", "ratio=0.5", "bytes=20000"}) {
+  for (const char* query : {"faces=100", "faces=999", "vertices=640", "ratio=0.5", "bytes=20000",
+                            "error=4", "error=100%", "error=0"}) {
     StreamDecoder whole = decoded();
     StreamDecoder prefix = decoded(resolve(wish(query), sample_index())->end);
     const AppliedWish expected = apply(query, whole);

@@ -61,7 +61,7 @@ bool says(const Result<FetchReport>& report, const char* text) {
 std::uint64_t end_of(const char* query) { return resolve(wish(query), sample_index())->end; }
 
 TEST_F(FetchToFile, WritesTheBytesOfAnExtract) {
-  for (const char* query : {"", "faces=1000", "ratio=0.05"}) {
+  for (const char* query : {"", "faces=1000", "ratio=0.05", "error=1%"}) {
     const Result<FetchReport> report = fetch(query, "out.ply");
     ASSERT_TRUE(report.ok()) << report.error().message;
     EXPECT_EQ(content("out.ply"), extracted(sample_file(), wish(query))) << query;
@@ -113,6 +113,31 @@ TEST_F(FetchToFile, WritesThePrefixThatCoversTheWish) {
 TEST_F(FetchToFile, WritesNoMoreThanTheWishOfABlindRead) {
   ASSERT_TRUE(fetch("faces=1", "out.pmesh").ok());
   EXPECT_EQ(content("out.pmesh"), first(sample_index().base_end()));
+}
+
+TEST_F(FetchToFile, WritesThePrefixOfAnErrorWish) {
+  const FetchReport report = *fetch("error=4", "out.pmesh");
+  EXPECT_EQ(content("out.pmesh"), first(sample_index().chunks[1].end()));
+  EXPECT_EQ(report.faces, sample_index().chunks[1].faces);
+  EXPECT_TRUE(report.reached);
+}
+
+TEST_F(FetchToFile, WritesEverythingForAnErrorOutOfReach) {
+  for (const char* name : {"out.ply", "out.pmesh"}) {
+    const FetchReport report = *fetch("error=0", name);
+    EXPECT_EQ(report.faces, sample_index().header.faces) << name;
+    EXPECT_FALSE(report.reached) << name;
+    EXPECT_TRUE(report.complete) << name;
+  }
+}
+
+TEST_F(FetchToFile, LeavesNothingBehindAWishThatTheFileCannotHave) {
+  transport_.file = other_file();
+  transport_.block_bytes = 16'384;
+  for (const char* name : {"out.ply", "out.pmesh"}) {
+    EXPECT_TRUE(says(fetch("error=1", name), "without measured errors")) << name;
+  }
+  EXPECT_EQ(file_count(), 0u);
 }
 
 TEST_F(FetchToFile, ContinuesAPrefix) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "client/apply_wish.h"
 #include "core/decimate/decimate.h"
@@ -11,6 +12,7 @@
 #include "core/pm/base_codec.h"
 #include "core/pm/encoder.h"
 #include "core/pm/stream_decoder.h"
+#include "tests/fixtures/measured.h"
 #include "tests/fixtures/shapes.h"
 
 namespace pmesh::test {
@@ -28,7 +30,11 @@ Bytes make_pm_file(const IndexedMesh& mesh, std::uint32_t base_faces) {
 }
 
 const Bytes& sample_file() {
-  static const Bytes file = make_pm_file(shapes::bumped(shapes::grid(100, 100), 0.02));
+  static const Bytes file = [] {
+    Bytes made = make_pm_file(shapes::bumped(shapes::grid(100, 100), 0.02));
+    const FileIndex index = **parse_prologue(made);
+    return with_errors(std::move(made), halving_errors(index, 8));
+  }();
   return file;
 }
 

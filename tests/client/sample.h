@@ -12,11 +12,12 @@ namespace pmesh::test {
 Bytes make_pm_file(const IndexedMesh& mesh, std::uint32_t base_faces = 60);
 
 /// A bumpy open grid of several chunks (about 50 KB), made once: its base and first chunks lie in
-/// the first 16 KiB, the rest does not.
+/// the first 16 KiB, the rest does not. Its errors are made up: 8 after the first chunk, and half
+/// of that after each further one.
 const Bytes& sample_file();
 /// Its header and index.
 const FileIndex& sample_index();
-/// Another file of the same kind.
+/// Another file of the same kind, without measured errors.
 const Bytes& other_file();
 
 LodRequest wish(const char* query);

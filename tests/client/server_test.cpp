@@ -26,7 +26,8 @@ using test::random_cuts;
 using test::wish;
 
 constexpr const char* kWishes[] = {"",           "ratio=0.5",    "ratio=0.05", "faces=1000",
-                                   "faces=1001", "vertices=501", "bytes=9000", "faces=3"};
+                                   "faces=1001", "vertices=501", "bytes=9000", "faces=3",
+                                   "error=3",    "error=200%",   "error=0"};
 
 void write(const std::string& path, ByteView bytes) {
   Result<AtomicFile> file = AtomicFile::create(path, Overwrite::yes);
@@ -49,6 +50,7 @@ class RealServer : public testing::Test {
     std::filesystem::create_directories(path("served"));
     write(path("served/sample.pmesh"), test::sample_file());
     write(path("served/large.pmesh"), large_file());
+    write(path("served/unmeasured.pmesh"), test::other_file());
     ServerOptions options;
     options.directory = path("served");
     options.http = "127.0.0.1:0";
@@ -94,6 +96,16 @@ TEST_F(RealServer, GivesTheBytesOfAnExtractForEveryWish) {
       EXPECT_EQ(report->bytes_fetched, resolve(wish(query), test::sample_index())->end)
           << url << " " << query;
     }
+  }
+}
+
+TEST_F(RealServer, RefusesAnErrorOfAMeshWithoutMeasuredErrors) {
+  for (const std::string& url : urls("unmeasured")) {
+    const Result<FetchReport> report = fetch(url, "error=1%", path("out.pmesh"));
+    ASSERT_FALSE(report.ok()) << url;
+    EXPECT_EQ(report.error().code, ErrorCode::usage) << url;
+    EXPECT_NE(report.error().message.find("without measured errors"), std::string::npos) << url;
+    EXPECT_FALSE(std::filesystem::exists(path("out.pmesh"))) << url;
   }
 }
 

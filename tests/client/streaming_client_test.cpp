@@ -32,8 +32,8 @@ Bytes ply_of(StreamingClient& client, const LodRequest& wish) {
 }
 
 TEST(StreamingClient, GivesWhatAnExtractGives) {
-  for (const char* query :
-       {"", "faces=100", "faces=3000", "vertices=901", "ratio=0.3", "bytes=20000", "faces=1"}) {
+  for (const char* query : {"", "faces=100", "faces=3000", "vertices=901", "ratio=0.3",
+                            "bytes=20000", "faces=1", "error=2", "error=0"}) {
     ScriptedTransport transport(sample_file());
     StreamingClient client(transport, impatient());
     ASSERT_TRUE(client.fetch(wish(query)).ok()) << query;
@@ -50,6 +50,23 @@ TEST(StreamingClient, DownloadsNoMoreThanTheBlindReadAndTheWish) {
   EXPECT_EQ(client.bytes_fetched(), end);
   ASSERT_EQ(transport.reads.size(), 2u);
   EXPECT_EQ(transport.reads[1].from, kMaxPrologueBytes);
+}
+
+TEST(StreamingClient, RefusesAWishThatTheFileCannotHaveOnceItsIndexIsKnown) {
+  for (const bool ignores_ranges : {false, true}) {
+    ScriptedTransport transport(other_file());
+    transport.ignores_ranges = ignores_ranges;
+    StreamingClient client(transport, impatient());
+    const Status status = client.fetch(wish("error=2"));
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().code, ErrorCode::usage);
+    EXPECT_LE(client.bytes_fetched(), transport.block_bytes * 2);
+    EXPECT_EQ(client.remedy(), Remedy::none);
+
+    EXPECT_EQ(client.fetch(wish("error=2")).error().code, ErrorCode::usage);
+    EXPECT_EQ(transport.reads.size(), 1u);
+    EXPECT_TRUE(client.fetch(wish("faces=100")).ok());
+  }
 }
 
 TEST(StreamingClient, GoesOnForAFinerWish) {

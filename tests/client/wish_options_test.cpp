@@ -29,16 +29,21 @@ TEST(WishOptions, SpellWishesAsTheHttpQueryDoes) {
   EXPECT_EQ(parsed("--vertices=7"), *parse_wish("vertices=7"));
   EXPECT_EQ(parsed("--ratio 0.05"), *parse_wish("ratio=0.05"));
   EXPECT_EQ(parsed("--bytes 65536"), *parse_wish("bytes=65536"));
+  EXPECT_EQ(parsed("--error 0.25"), *parse_wish("error=0.25"));
+  EXPECT_EQ(parsed("--error 0.1%"), *parse_wish("error=0.1%"));
 }
 
 TEST(WishOptions, RefuseASecondWish) {
   EXPECT_FALSE(parsed("--faces 1000 --ratio 0.5"));
   EXPECT_FALSE(parsed("--bytes 1 --vertices 1"));
+  EXPECT_FALSE(parsed("--error 1 --bytes 1"));
 }
 
 TEST(WishOptions, RefuseValuesOutOfRange) {
-  for (const char* line : {"--faces -1", "--faces 1.5", "--faces x", "--faces 99999999999999999999",
-                           "--ratio 0", "--ratio 1.01", "--ratio nan", "--bytes 1k", "--faces"}) {
+  for (const char* line :
+       {"--faces -1", "--faces 1.5", "--faces x", "--faces 99999999999999999999", "--ratio 0",
+        "--ratio 1.01", "--ratio nan", "--bytes 1k", "--faces", "--error -1", "--error=-1",
+        "--error nan", "--error inf", "--error 1%%", "--error 1mm", "--error"}) {
     EXPECT_FALSE(parsed(line)) << line;
   }
 }

@@ -17,10 +17,12 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// A store with one mesh, "bunny"; seeds know its hash, which is always the same.
+/// A store with the meshes "bunny" and "measured"; seeds know their hashes, always the same.
 MeshStore& store() {
   static const TemporaryDirectory directory;
-  static const std::string path = directory.write("bunny.pmesh", testing::make_sample().bytes);
+  static const std::string bunny = directory.write("bunny.pmesh", testing::make_sample().bytes);
+  static const std::string measured =
+      directory.write("measured.pmesh", testing::make_measured_sample().bytes);
   static const std::unique_ptr<MeshStore> opened = MeshStore::open(directory / "").value();
   return *opened;
 }

@@ -1,5 +1,6 @@
 // The push parser behind its checksums, with cuts chosen by the input: the first byte says how the
-// rest is cut. Cut and whole feeding must agree, and what decodes must be a valid mesh.
+// rest is cut. Cut and whole feeding must agree, what decodes must be a valid mesh on the lattice,
+// and coarsening must be undone exactly.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -17,6 +18,23 @@ pmesh::DecodeLimits limits() {
   return limits;
 }
 
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+void require_same(const pmesh::LatticeMesh& a, const pmesh::LatticeMesh& b) {
+  require(a.triangles == b.triangles && a.positions == b.positions);
+}
+
+void check_mesh(pmesh::RefinableMesh& mesh, int lattice_bits) {
+  require(mesh.connectivity().validate().ok());
+  for (const pmesh::Vec3i p : mesh.positions()) require((p.x | p.y | p.z) >> lattice_bits == 0);
+  const pmesh::LatticeMesh finest = mesh.snapshot();
+  mesh.set_splits(0);
+  mesh.set_finest();
+  require_same(mesh.snapshot(), finest);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -30,10 +48,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t at = 0; at < file.size() && cut_ok; at += step) {
     cut_ok = cut.feed(file.subspan(at, std::min(step, file.size() - at))).ok();
   }
-  if (whole_ok != cut_ok || whole.chunk_count() != cut.chunk_count()) std::abort();
+  require(whole_ok == cut_ok && whole.chunk_count() == cut.chunk_count());
   if (whole.has_base()) {
-    if (whole.mesh().snapshot().triangles != cut.mesh().snapshot().triangles) std::abort();
-    if (!whole.mesh().connectivity().validate()) std::abort();
+    require_same(whole.mesh().snapshot(), cut.mesh().snapshot());
+    check_mesh(whole.mesh(), whole.index().header.lattice.bits);
   }
   return 0;
 }

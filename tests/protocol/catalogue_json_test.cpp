@@ -35,9 +35,8 @@ TEST(MeshInfoJson, HasEveryMember) {
 }
 
 TEST(MeshInfoJson, GivesErrorsOnlyIfTheHeaderSaysSo) {
-  FileIndex index = testing::sample_index();
-  index.chunks[1].max_error = 0.5;
-  index.chunks[1].rms_error = 0.25;
+  FileIndex index = testing::sample_index_with_errors();
+  index.header.errors_measured = false;
   const json unmeasured = json::parse(mesh_info_json({"bunny", &index}))["chunks"];
   EXPECT_TRUE(unmeasured[1]["max_error"].is_null());
   EXPECT_TRUE(unmeasured[1]["rms_error"].is_null());
@@ -48,8 +47,8 @@ TEST(MeshInfoJson, GivesErrorsOnlyIfTheHeaderSaysSo) {
                              {"bytes", 30},
                              {"vertices", 22},
                              {"faces", 40},
-                             {"max_error", 0.5},
-                             {"rms_error", 0.25}}));
+                             {"max_error", 1.0},
+                             {"rms_error", 0.5}}));
 }
 
 TEST(MeshInfo, IsReadBack) {

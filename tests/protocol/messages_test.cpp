@@ -70,6 +70,8 @@ TEST(Messages, WantComesBack) {
   const Want want{.from_offset = 77, .wish = {.kind = WishKind::faces, .count = 5}};
   EXPECT_EQ(parse_want(payload(encode_want(1, want))).value(), want);
   EXPECT_EQ(parse_want(payload(encode_want(1, {}))).value(), Want{});
+  const Want near{.wish = {.kind = WishKind::error, .error = 0.1, .error_is_percent = true}};
+  EXPECT_EQ(parse_want(payload(encode_want(1, near))).value(), near);
 }
 
 TEST(Messages, WantTellsABadWishFromABadMessage) {

@@ -76,7 +76,20 @@ TEST(Routes, RejectsBrokenEscapes) {
 TEST(Routes, RejectsBadWishes) {
   EXPECT_FALSE(parse_target(hashed("/bunny/", ".pmesh?faces=x")).ok());
   EXPECT_FALSE(parse_target(hashed("/bunny/", ".pmesh?faces=1&bytes=2")).ok());
-  EXPECT_FALSE(parse_target(hashed("/bunny/", ".pmesh?faces=%")).ok());
+  for (const char* query :
+       {"faces=%", "faces=5%", "error=%", "error=1%%", "error=1%2", "error=1%25%", "error=%1"}) {
+    EXPECT_FALSE(parse_target(hashed("/bunny/", ".pmesh?").append(query)).ok()) << query;
+  }
+}
+
+TEST(Routes, TakesAPercentSignEscapedOrAtTheEnd) {
+  const LodRequest wish{.kind = WishKind::error, .error = 0.1, .error_is_percent = true};
+  for (const char* query : {"error=0.1%25", "error=0.1%", "error%3D0.1%25"}) {
+    EXPECT_EQ(route(hashed("/bunny/", ".pmesh?").append(query)),
+              Route(MeshFileRoute{"bunny", kHashBytes, wish}))
+        << query;
+  }
+  EXPECT_EQ(file_target("bunny", kHashBytes, wish), hashed("/bunny/", ".pmesh?error=0.1%25"));
 }
 
 TEST(Routes, RejectsOtherFormsOfTarget) {

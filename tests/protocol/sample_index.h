@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pm/format.h"
+#include "tests/fixtures/measured.h"
 
 namespace pmesh::testing {
 
@@ -32,6 +33,14 @@ inline FileIndex sample_index_with_borders() {
   index.chunks[1].faces = 36;
   index.chunks[2].faces = 76;
   index.header.faces = 76;
+  return index;
+}
+
+/// The first with measured errors 4, 1 and 2: the third chunk makes it worse. Its diagonal is
+/// 0.5 * length(4, 2, 0) = sqrt(5).
+inline FileIndex sample_index_with_errors() {
+  FileIndex index = sample_index();
+  set_errors(index, {4, 1, 2});
   return index;
 }
 

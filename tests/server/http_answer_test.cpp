@@ -14,6 +14,7 @@ namespace pmesh {
 namespace {
 
 using nlohmann::json;
+using testing::make_measured_sample;
 using testing::make_sample;
 using testing::SampleFile;
 
@@ -21,6 +22,7 @@ class HttpAnswerTest : public ::testing::Test {
  protected:
   void SetUp() override {
     directory_.write("bunny.pmesh", bunny_.bytes);
+    directory_.write("measured.pmesh", measured_.bytes);
     store_ = MeshStore::open(directory_ / "", std::chrono::milliseconds(0)).value();
   }
 
@@ -34,20 +36,25 @@ class HttpAnswerTest : public ::testing::Test {
   std::string file(const std::string& query = "") const {
     return "/bunny/" + bunny_.hash() + ".pmesh" + query;
   }
+  std::string measured_file(const std::string& query) const {
+    return "/measured/" + measured_.hash() + ".pmesh" + query;
+  }
   std::string etag(const std::string& suffix = "") const {
     return std::string("\"").append(bunny_.hash()).append(suffix).append("\"");
   }
   std::uint64_t chunk_end(std::size_t chunk) const { return bunny_.index.chunks[chunk].end(); }
 
   const SampleFile bunny_ = make_sample();
+  const SampleFile measured_ = make_measured_sample();
   const std::uint64_t size_ = bunny_.bytes.size();
   TemporaryDirectory directory_;
   std::unique_ptr<MeshStore> store_;
   std::string target_;
 };
 
-TEST_F(HttpAnswerTest, SampleHasTheHashThatTheFuzzSeedsName) {
+TEST_F(HttpAnswerTest, SamplesHaveTheHashesThatTheFuzzSeedsName) {
   EXPECT_EQ(bunny_.hash(), "2136a91f9fcd0a7339acbda185a3bf5c");
+  EXPECT_EQ(measured_.hash(), "a7a3549aec80c91c32c4b86b9c507578");
 }
 
 TEST_F(HttpAnswerTest, CatalogueListsTheMeshes) {
@@ -170,6 +177,30 @@ TEST_F(HttpAnswerTest, WishBelowTheBaseGivesTheBase) {
   EXPECT_EQ(answer.fields.find("PMesh-Chunks"), "0");
 }
 
+TEST_F(HttpAnswerTest, ErrorWishGivesTheFirstChunkEndNearEnough) {
+  for (const char* query : {"?error=2.5", "?error=0.04%25", "?error=0.04%"}) {
+    const HttpAnswer answer = get(measured_file(query));
+    EXPECT_EQ(answer.status, 200) << query;
+    EXPECT_EQ(answer.span, (ByteSpan{0, measured_.index.chunks[1].end()})) << query;
+    EXPECT_EQ(answer.fields.find("Content-Location"), measured_file("?chunks=0-1"));
+    EXPECT_EQ(answer.fields.find("PMesh-Reached"), "1");
+  }
+}
+
+TEST_F(HttpAnswerTest, ErrorWishOutOfReachGivesTheWholeFile) {
+  const HttpAnswer answer = get(measured_file("?error=0.5"));
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.span, (ByteSpan{0, measured_.bytes.size()}));
+  EXPECT_EQ(answer.fields.find("Content-Location"), measured_file("?chunks=0-2"));
+  EXPECT_EQ(answer.fields.find("PMesh-Reached"), "0");
+}
+
+TEST_F(HttpAnswerTest, ErrorWishNeedsMeasuredErrors) {
+  const HttpAnswer answer = get(file("?error=2.5"));
+  EXPECT_EQ(answer.status, 400);
+  EXPECT_NE(answer.text.find("without measured errors"), std::string::npos);
+}
+
 TEST_F(HttpAnswerTest, RangeWorksWithinAWish) {
   const HttpAnswer answer = get(file("?chunks=1-2"), {.range = "bytes=5-"});
   EXPECT_EQ(answer.status, 206);
@@ -178,8 +209,10 @@ TEST_F(HttpAnswerTest, RangeWorksWithinAWish) {
 }
 
 TEST_F(HttpAnswerTest, BadWishesAreBadRequests) {
-  for (const char* query : {"?faces=x", "?faces=1&bytes=2", "?ratio=2", "?chunks=0-3", "?x=1"}) {
+  for (const char* query : {"?faces=x", "?faces=1&bytes=2", "?ratio=2", "?chunks=0-3", "?x=1",
+                            "?error=-1", "?error=nan", "?error=1e999", "?error=1%%"}) {
     EXPECT_EQ(get(file(query)).status, 400) << query;
+    EXPECT_EQ(get(measured_file(query)).status, 400) << query;
   }
 }
 

@@ -66,6 +66,17 @@ TEST_F(HttpSessionTest, SendsRangesOfAWish) {
   EXPECT_EQ(response.body, bunny_.text(begin + 10, begin + 20));
 }
 
+TEST_F(HttpSessionTest, SendsThePrefixOfAnErrorWish) {
+  bunny_ = testing::make_measured_sample();
+  serve();
+  for (const char* query : {"?error=2", "?error=0.03%25", "?error=0.03%"}) {
+    const HttpResponse response = fetch(address(), file() + query);
+    EXPECT_EQ(response.body, bunny_.text(0, bunny_.index.chunks[1].end())) << query;
+    EXPECT_EQ(response.field("PMesh-Reached"), "1") << query;
+  }
+  EXPECT_EQ(fetch(address(), file() + "?error=0").field("PMesh-Reached"), "0");
+}
+
 TEST_F(HttpSessionTest, AnswersManyRequestsOnOneConnection) {
   serve();
   TestClient client(address());

@@ -7,6 +7,7 @@
 
 #include "core/pm/digest.h"
 #include "core/pm/format.h"
+#include "tests/fixtures/measured.h"
 
 namespace pmesh::testing {
 
@@ -46,9 +47,9 @@ inline Bytes make_sections(FileIndex& index, std::uint32_t seed) {
 
 /// A base of 16 faces and 10 vertices in 300 bytes, then chunks of these sizes. Each adds ten
 /// vertices and twenty faces, or as many more as its bytes need to be plausible. Another seed gives
-/// another file of the same size.
+/// another file of the same size. The errors are measured if there is one for each chunk.
 inline SampleFile make_sample(const std::vector<std::uint32_t>& chunk_bytes = {100, 200, 300},
-                              std::uint32_t seed = 1) {
+                              std::uint32_t seed = 1, const std::vector<double>& max_errors = {}) {
   SampleFile sample;
   FileHeader& header = sample.index.header;
   header.vertices = header.base_vertices = 10;
@@ -65,6 +66,7 @@ inline SampleFile make_sample(const std::vector<std::uint32_t>& chunk_bytes = {1
     sample.index.chunks.push_back(
         {.bytes = bytes, .vertices = header.vertices, .faces = header.faces});
   }
+  set_errors(sample.index, max_errors);
   const Bytes sections = make_sections(sample.index, seed);
   write_prologue(sample.index);  // for its totals
   header.content_hash = hash_prologue(write_prologue(sample.index));
@@ -72,5 +74,8 @@ inline SampleFile make_sample(const std::vector<std::uint32_t>& chunk_bytes = {1
   sample.bytes.insert(sample.bytes.end(), sections.begin(), sections.end());
   return sample;
 }
+
+/// The first sample with the measured errors 4, 2 and 1; its box's diagonal is 4095 * sqrt(3).
+inline SampleFile make_measured_sample() { return make_sample({100, 200, 300}, 1, {4, 2, 1}); }
 
 }  // namespace pmesh::testing

@@ -161,6 +161,29 @@ TEST_F(TcpSessionTest, WantBelowTheBaseIsNotReached) {
   EXPECT_FALSE(delivery().done().reached);
 }
 
+TEST_F(TcpSessionTest, WantOfAnErrorGivesTheFirstChunkEndNearEnough) {
+  bunny_ = testing::make_measured_sample();
+  serve();
+  connect_and_open();
+  const std::uint64_t end = bunny_.index.chunks[1].end();
+  for (const char* query : {"error=2", "error=0.03%"}) {
+    want(query);
+    const Delivery got = delivery();
+    EXPECT_EQ(got.bytes, bunny_.text(0, end)) << query;
+    EXPECT_EQ(got.done(), (Done{end, 56, 30, true})) << query;
+  }
+}
+
+TEST_F(TcpSessionTest, WantOfAnErrorOutOfReachGivesTheWholeFile) {
+  bunny_ = testing::make_measured_sample();
+  serve();
+  connect_and_open();
+  want("error=0.9");
+  const Delivery got = delivery();
+  EXPECT_EQ(got.bytes, bunny_.text());
+  EXPECT_FALSE(got.done().reached);
+}
+
 TEST_F(TcpSessionTest, SendsALargeFileInFramesOfTheAskedSize) {
   bunny_ = large_sample();
   serve();
@@ -228,6 +251,8 @@ TEST_F(TcpSessionTest, BadWishesFailOnTheirStream) {
   send(encode_frame(FrameType::want, 1, as_bytes(std::string(8, '\0') + "color=red")));
   expect_failure(1, FailureCode::bad_wish);
   want("chunks=0-99");
+  expect_failure(1, FailureCode::bad_wish);
+  want("error=1");  // of a mesh without measured errors
   expect_failure(1, FailureCode::bad_wish);
   want("", bunny_.bytes.size() + 1);
   expect_failure(1, FailureCode::bad_wish);

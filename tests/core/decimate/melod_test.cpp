@@ -14,7 +14,7 @@ const double kRoot3 = std::sqrt(3.0);
 
 double cost(const Melod& melod, const IndexedMesh& mesh, std::uint32_t v, std::uint32_t head) {
   const OneRing ring = ring_of(mesh, v);
-  return melod.propose(ring, index_in(ring, head), moved_to(ring, head)).cost;
+  return melod.cost(ring, melod.prepare(ring), index_in(ring, head), moved_to(ring, head));
 }
 
 TEST(Melod, FlatVertexHasNoImportance) {
@@ -84,8 +84,8 @@ TEST(Melod, BorderCollapseCostsLambdaTimesTurnTimesLength) {
 TEST(Melod, PriorityScalesTheGreaterOfCostAndPoppedKey) {
   const OneRing ring = ring_of(cube_corner(), 0);
   const double w = Melod::importance(ring);
-  EXPECT_DOUBLE_EQ(Melod().priority(ring, 2, 0.5), w * 2);
-  EXPECT_DOUBLE_EQ(Melod().priority(ring, 2, 7), w * 7);
+  EXPECT_DOUBLE_EQ(Melod().priority({w}, 2, 0.5), w * 2);
+  EXPECT_DOUBLE_EQ(Melod().priority({w}, 2, 7), w * 7);
 }
 
 }  // namespace

@@ -67,8 +67,8 @@ TEST(FoldOver, IsSeenWhenAFaceTurnsOver) {
   mesh.positions[2] = {0.3, 0.3, 0};
   mesh.positions[4] = {0.2, 0.2, 0};
   const OneRing ring = ring_of(mesh, 4);
-  EXPECT_TRUE(folds_over(moved_to(ring, 1)));
-  EXPECT_FALSE(folds_over(moved_to(ring, 0)));
+  EXPECT_TRUE(folds_over(ring, moved_to(ring, 1)));
+  EXPECT_FALSE(folds_over(ring, moved_to(ring, 0)));
 }
 
 TEST(FoldOver, IsNotSeenInFacesWithoutArea) {
@@ -78,7 +78,7 @@ TEST(FoldOver, IsNotSeenInFacesWithoutArea) {
   mesh.positions[4] = {0.2, 0.2, 0};
   const OneRing ring = ring_of(mesh, 4);
   EXPECT_EQ(ring.nz[index_in(ring, 2)], 0);
-  EXPECT_FALSE(folds_over(moved_to(ring, 1)));
+  EXPECT_FALSE(folds_over(ring, moved_to(ring, 1)));
 }
 
 }  // namespace

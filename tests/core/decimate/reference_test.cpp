@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/decimate/decimate.h"
+#include "core/decimate/indexed_heap.h"
 #include "core/decimate/legality.h"
-#include "core/decimate/vertex_heap.h"
 #include "tests/core/decimate/rings.h"
 #include "tests/core/mesh/link_condition.h"
 #include "tests/fixtures/shapes.h"
@@ -21,8 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class Reference {
  public:
   explicit Reference(const IndexedMesh& mesh)
-      : mesh_(half_edges(mesh)), positions_(mesh.positions), vertices_(mesh.positions.size()) {
-    scale_ = unit_scale(positions_);
+      : work_(half_edges(mesh), mesh.positions), vertices_(mesh.positions.size()) {
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) evaluate(VertexId(v), 0);
   }
 
@@ -40,9 +39,9 @@ class Reference {
     if (!best.head.valid()) return std::nullopt;
     std::vector<VertexId> changed;
     for (const Half& half : vertices_[best.removed.value].halves) changed.push_back(half.head);
-    const auto done = mesh_.collapse(best.removed, mesh_.find_edge(best.removed, best.head));
+    work_.collapse(best.removed, mesh_.find_edge(best.removed, best.head));
     for (const VertexId v : changed) evaluate(v, best.value);
-    return done;
+    return work_.log().collapses.back();
   }
 
  private:
@@ -62,14 +61,16 @@ class Reference {
 
   void evaluate(VertexId v, double popped) {
     EXPECT_TRUE(gather_neighbours(mesh_, v, ring_));
-    gather_geometry(positions_, scale_, BorderLoops(mesh_), ring_);
+    gather_positions(work_, ring_);
+    gather_faces(ring_);
     Vertex& vertex = vertices_[v.value];
     vertex = {{}, Melod::importance(ring_), popped};
     for (std::uint32_t i = 0; i < ring_.neighbours; ++i) {
       vertex.halves.push_back({ring_.ids[i]});
       if (!may_move_to(ring_, i)) continue;
       move_faces(ring_, i, moved_);
-      if (!folds_over(moved_)) vertex.halves[i].cost = Melod().propose(ring_, i, moved_).cost;
+      if (folds_over(ring_, moved_)) continue;
+      vertex.halves[i].cost = Melod().cost(ring_, {vertex.importance}, i, moved_);
     }
   }
 
@@ -90,10 +91,9 @@ class Reference {
     return cheapest;
   }
 
-  HalfEdgeMesh mesh_;
-  const std::vector<Vec3d>& positions_;
+  WorkingMesh work_;
+  const HalfEdgeMesh& mesh_ = work_.mesh();
   std::vector<Vertex> vertices_;
-  double scale_ = 1;
   OneRing ring_;
   MovedFaces moved_;
 };
@@ -102,6 +102,7 @@ class AgainstReference : public testing::TestWithParam<shapes::Shape> {};
 
 TEST_P(AgainstReference, MakesTheSameCollapsesInTheSameOrder) {
   DecimateOptions options;
+  options.metric = Melod();
   options.base_faces = 0;
   const IndexedMesh& mesh = GetParam().mesh;
   const Decimation result = decimate(half_edges(mesh), mesh.positions, options);

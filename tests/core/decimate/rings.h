@@ -15,10 +15,17 @@ inline HalfEdgeMesh half_edges(const IndexedMesh& mesh) {
 
 /// The one-ring of vertex `v`, in the mesh's own units.
 inline OneRing ring_of(const IndexedMesh& mesh, std::uint32_t v) {
-  const HalfEdgeMesh connectivity = half_edges(mesh);
+  const WorkingMesh work(half_edges(mesh), mesh.positions);
   OneRing ring;
-  EXPECT_TRUE(gather_neighbours(connectivity, VertexId(v), ring));
-  gather_geometry(mesh.positions, 1, BorderLoops(connectivity), ring);
+  EXPECT_TRUE(gather_neighbours(work.mesh(), VertexId(v), ring));
+  gather_positions(work, ring);
+  for (OneRing::Row* row : {&ring.x, &ring.y, &ring.z}) {
+    for (double& coordinate : *row) coordinate /= work.frame().scale;
+  }
+  for (Vec3d* beyond : {&ring.beyond_first, &ring.beyond_last}) {
+    *beyond = 1 / work.frame().scale * *beyond;
+  }
+  gather_faces(ring);
   return ring;
 }
 

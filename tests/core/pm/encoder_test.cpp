@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/box.h"
 #include "core/pm/base_codec.h"
 #include "core/pm/digest.h"
 #include "core/pm/stream_decoder.h"
@@ -37,6 +38,52 @@ TEST(Encoder, EveryChunkEndIsAManifold) {
       from = to;
     }
   }
+}
+
+RefinableMesh decoded(const EncodedShape& shape) {
+  StreamDecoder decoder(decode_base);
+  EXPECT_TRUE(decoder.feed(shape.file).ok());
+  return std::move(decoder.mesh());
+}
+
+TEST(Encoder, TheBoxIsTheFullMeshsAndNotThatOfRelocatedVertices) {
+  const EncodedShape shape = encode_relocating_shape("ball", shapes::icosphere(4));
+  const FileHeader header = (**parse_prologue(shape.file)).header;
+  const auto full = bounding_box(std::span<const Vec3i>(shape.quantised.positions));
+  EXPECT_EQ((Box<std::int32_t>{header.box_low, header.box_high}), full);
+  RefinableMesh mesh = decoded(shape);
+  bool exceeded = false;
+  for (std::uint32_t k = 0; k < mesh.known_splits() && !exceeded; ++k) {
+    mesh.set_splits(k);
+    const auto box = bounding_box(mesh.positions());
+    exceeded = box.low.x < full.low.x || box.high.x > full.high.x;
+  }
+  EXPECT_TRUE(exceeded);  // else this test would prove nothing
+}
+
+TEST(Encoder, VerticesThatStayMakeNoRelocations) {
+  for (const EncodedShape& shape : encoded_manifolds()) {
+    const FileIndex index = **parse_prologue(shape.file);
+    const bool expected = shape.name.ends_with("relocating") && !index.chunks.empty();
+    EXPECT_EQ(index.header.has_relocations, expected) << shape.name;
+  }
+}
+
+// Whether a chunk of an icosphere ends within a pair of collapses.
+bool cuts_pairs(std::uint32_t collapses_per_step) {
+  const EncodedShape shape =
+      encode_relocating_shape("ball", shapes::icosphere(5), 12, 20, collapses_per_step);
+  const FileIndex index = **parse_prologue(shape.file);
+  bool cut = false;
+  for (const ChunkRow& row : index.chunks) {
+    cut |= (row.vertices - index.header.base_vertices) % 2 != 0;
+  }
+  return cut;
+}
+
+TEST(Encoder, NoChunkEndsWithinAStepOfTwoCollapses) {
+  EXPECT_FALSE(cuts_pairs(2));
+  EXPECT_TRUE(cuts_pairs(1));  // else this test would prove nothing
 }
 
 TEST(Encoder, GivesTheSameBytesEveryTime) {

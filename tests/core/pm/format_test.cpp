@@ -41,6 +41,7 @@ TEST(Prologue, ComesBackAsItWasWritten) {
   FileIndex index = small_index();
   index.header.content_hash.fill(7);
   index.header.has_borders = true;
+  index.header.has_relocations = true;
   const Bytes bytes = write_prologue(index);
   const auto parsed = parse_prologue(bytes);
   ASSERT_TRUE(parsed.ok() && parsed->has_value());
@@ -52,6 +53,7 @@ TEST(Prologue, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.header.box_high, index.header.box_high);
   EXPECT_EQ(back.header.content_hash, index.header.content_hash);
   EXPECT_TRUE(back.header.has_borders);
+  EXPECT_TRUE(back.header.has_relocations);
   EXPECT_EQ(back.chunks[1].offset, bytes.size() + 150);
   EXPECT_EQ(back.header.file_bytes, bytes.size() + 220);
   FileIndex again = back;
@@ -150,6 +152,19 @@ TEST(Prologue, RefusesMoreBytesThanItsCountsCanNeed) {
   EXPECT_EQ(error_of([](FileIndex& i) { i.header.base_bytes = 64 * 4 + 4097; }), misfit);
   EXPECT_EQ(error_of([](FileIndex& i) { i.chunks[0].bytes = 65; }),
             "index row 0: impossible counts");
+}
+
+TEST(Prologue, AllowsLongerSplitsOnlyWithRelocations) {
+  const auto error_with_bytes = [](std::uint32_t bytes, bool relocations) {
+    return error_of([=](FileIndex& i) {
+      i.chunks[0].bytes = bytes;
+      i.header.has_relocations = relocations;
+    });
+  };
+  EXPECT_EQ(error_with_bytes(2 * 32, false), "none");
+  EXPECT_EQ(error_with_bytes(2 * 32 + 1, false), "index row 0: impossible counts");
+  EXPECT_EQ(error_with_bytes(2 * 64, true), "none");
+  EXPECT_EQ(error_with_bytes(2 * 64 + 1, true), "index row 0: impossible counts");
 }
 
 TEST(Prologue, RefusesStringsThatCannotBePrinted) {

@@ -12,10 +12,11 @@ LatticeMesh square() {
   return {{{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {0, 100, 0}}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-FileHeader header_with_borders() {
+FileHeader header_with_borders(bool relocations = false) {
   FileHeader header;
   header.lattice.bits = 10;
   header.has_borders = true;
+  header.has_relocations = relocations;
   return header;
 }
 
@@ -36,15 +37,33 @@ const std::vector<VertexSplit> kSplits = {
     {{HalfEdgeId(2), 1, SplitKind::interior}, {0, 1023, 0}},
 };
 
-TEST(SplitCodec, GivesBackEveryKindOfSplit) {
-  const FileHeader header = header_with_borders();
+// The same, moving vertex 0 to a corner of the lattice and back, and vertex 2 not at all.
+const std::vector<VertexSplit> kRelocatingSplits = {
+    {{HalfEdgeId(0), 0, SplitKind::border_first}, {2, 0, 10}, {1023, 1023, 1023}},
+    {{HalfEdgeId(4), 1, SplitKind::border_last}, {1023, 0, 1023}},
+    {{HalfEdgeId(0), 1, SplitKind::interior}, {0, 1023, 0}, {-1023, -1023, -1023}},
+};
+
+void expect_round_trip(const std::vector<VertexSplit>& splits, const FileHeader& header) {
   RefinableMesh expected = *RefinableMesh::from_base(square());
-  for (const VertexSplit& split : kSplits) ASSERT_TRUE(expected.append(split).ok());
+  for (const VertexSplit& split : splits) ASSERT_TRUE(expected.append(split).ok());
   RefinableMesh mesh = *RefinableMesh::from_base(square());
-  const Status decoded = decode_chunk(encode(kSplits, header), 3, header, mesh);
+  const auto count = static_cast<std::uint32_t>(splits.size());
+  const Status decoded = decode_chunk(encode(splits, header), count, header, mesh);
   ASSERT_TRUE(decoded.ok()) << decoded.error().message;
-  EXPECT_EQ(mesh.snapshot().positions, expected.snapshot().positions);
-  EXPECT_EQ(mesh.snapshot().triangles, expected.snapshot().triangles);
+  for (std::uint32_t k = count + 1; k-- > 0;) {
+    mesh.set_splits(k);
+    expected.set_splits(k);
+    EXPECT_EQ(mesh.snapshot().positions, expected.snapshot().positions) << k;
+    EXPECT_EQ(mesh.snapshot().triangles, expected.snapshot().triangles) << k;
+  }
+}
+
+TEST(SplitCodec, GivesBackEveryKindOfSplit) { expect_round_trip(kSplits, header_with_borders()); }
+
+TEST(SplitCodec, GivesBackRelocations) {
+  expect_round_trip(kRelocatingSplits, header_with_borders(true));
+  expect_round_trip(kSplits, header_with_borders(true));
 }
 
 TEST(SplitCodec, PacksTheBitsThatTheSpecificationSays) {
@@ -55,9 +74,16 @@ TEST(SplitCodec, PacksTheBitsThatTheSpecificationSays) {
   EXPECT_EQ(bytes, (Bytes{0x01, 0x91, 0x00, 0x14}));
 }
 
-TEST(SplitCodec, RefusesBytesTooFewOrTooMany) {
-  const FileHeader header = header_with_borders();
-  const Bytes whole = encode(kSplits, header);
+TEST(SplitCodec, PacksTheRelocationThatTheSpecificationSays) {
+  // As above, then kept moves by (2, 0, 0) and was predicted at (-50, 0, -10): zigzag(52) = 104 ->
+  // 1 0 and 40 in 6 bits; zigzag(0); zigzag(10) = 20.
+  const VertexSplit split{kSplits[0].site, kSplits[0].position, {2, 0, 0}};
+  const Bytes bytes = encode({split}, header_with_borders(true));
+  EXPECT_EQ(bytes, (Bytes{0x01, 0x91, 0x00, 0x54, 0x28, 0x00, 0x05}));
+}
+
+void expect_exact_length(const std::vector<VertexSplit>& splits, const FileHeader& header) {
+  const Bytes whole = encode(splits, header);
   for (std::size_t n = 0; n < whole.size(); ++n) {
     RefinableMesh mesh = *RefinableMesh::from_base(square());
     const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
@@ -70,18 +96,57 @@ TEST(SplitCodec, RefusesBytesTooFewOrTooMany) {
             "bytes are left over after the last split");
 }
 
-TEST(SplitCodec, RefusesAPositionOffTheLattice) {
-  const FileHeader header = header_with_borders();
-  RefinableMesh mesh = *RefinableMesh::from_base(square());
+TEST(SplitCodec, RefusesBytesTooFewOrTooMany) {
+  expect_exact_length(kSplits, header_with_borders());
+  expect_exact_length(kRelocatingSplits, header_with_borders(true));
+}
+
+// What is wrong with an ear on half-edge 0, at the place of vertex 0, whose coordinates' codes are
+// all zero but for number `wrong`, which is escaped and stands for `residual`.
+std::string error_of_escape(int wrong, std::int32_t residual) {
   BitWriter bits;
-  bits.put(1, 2);                // border_first
-  bits.put(0, 3 + 3);            // half-edge 0, no moved face
-  bits.put((1u << 24) - 1, 24);  // escape: the value itself
-  bits.put(zigzag(-1), 32);
-  bits.put(0, 7);
-  bits.put(0, 7);
-  EXPECT_EQ(decode_chunk(std::move(bits).finish(), 1, header, mesh).error().message,
-            "split 0: the new vertex lies off the lattice");
+  bits.put(1, 2);      // border_first
+  bits.put(0, 3 + 3);  // half-edge 0, no moved face
+  for (int k = 0; k < 6; ++k) {
+    if (k != wrong) {
+      bits.put(0, 7);
+      continue;
+    }
+    bits.put((1u << 24) - 1, 24);
+    bits.put(zigzag(residual), 32);
+  }
+  RefinableMesh mesh = *RefinableMesh::from_base(square());
+  const Status decoded = decode_chunk(std::move(bits).finish(), 1, header_with_borders(true), mesh);
+  return decoded ? "none" : decoded.error().message;
+}
+
+TEST(SplitCodec, RefusesPositionsOffTheLattice) {
+  for (const std::int32_t residual : {-1, 1024, INT32_MAX, INT32_MIN}) {
+    EXPECT_EQ(error_of_escape(1, residual), "split 0: added vertex: off the lattice");
+    EXPECT_EQ(error_of_escape(5, residual), "split 0: kept vertex: off the lattice");
+  }
+  EXPECT_EQ(error_of_escape(1, 1023), "split 0: kept vertex: off the lattice");  // at -1023
+  EXPECT_EQ(error_of_escape(5, 1023), "none");
+}
+
+TEST(SplitCodec, NoSplitTakesMoreThanTheFormatAllows) {
+  constexpr std::int32_t kLast = (1 << 30) - 1;
+  FileHeader header = header_with_borders(true);
+  header.lattice.bits = 30;
+  RefinableMesh mesh = *RefinableMesh::from_base({{{}, {}, {}}, {{0, 1, 2}}});
+  SplitEncoder encoder(header);
+  VertexSplit ear{{HalfEdgeId(0), 0, SplitKind::border_first}, {}};
+  for (int k = 0; k < 500; ++k) {  // ears without extent teach the models to expect zero
+    encoder.put(ear, mesh);
+    ASSERT_TRUE(mesh.append(ear).ok());
+    ear.site.half_edge = HalfEdgeId(3 * mesh.face_count() - 1);
+  }
+  ear.position = {kLast, kLast, kLast};
+  ear.relocation = ear.position;
+  const std::size_t before = encoder.byte_count();
+  encoder.put(ear, mesh);
+  EXPECT_LE(encoder.byte_count(), before + header.max_split_bytes());
+  EXPECT_GT(encoder.byte_count(), before + kMaxSplitBytes);
 }
 
 TEST(SplitCodec, ZigzagAndBackIsTheIdentity) {

@@ -46,6 +46,14 @@ TEST_F(Verify, AcceptsWhatTheEncoderWrites) {
   EXPECT_TRUE(same_triangles(verified->full, shape_.quantised));
 }
 
+TEST_F(Verify, AcceptsRelocations) {
+  shape_ = encode_relocating_shape("ball", shapes::icosphere(4));
+  const auto verified = verify_file(directory_.write("x.pmesh", shape_.file));
+  ASSERT_TRUE(verified.ok()) << verified.error().message;
+  EXPECT_TRUE(same_triangles(verified->full, shape_.quantised));
+  EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.box_low.x -= 1; })), "wrong bounding box");
+}
+
 TEST_F(Verify, NamesTheMissingBytesOfAPartialFile) {
   const Bytes part(shape_.file.begin(), shape_.file.end() - 10);
   EXPECT_EQ(error_of(part), "incomplete: 10 bytes are missing");
@@ -68,6 +76,8 @@ TEST_F(Verify, SeesThroughForgedClaims) {
   EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.base_bytes = 0; })),
             "header: the base's bytes do not fit its faces");
   EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.has_borders = true; })).substr(0, 8),
+            "chunk 0:");
+  EXPECT_EQ(error_of(forged([](FileIndex& i) { i.header.has_relocations = true; })).substr(0, 8),
             "chunk 0:");
   EXPECT_EQ(error_of(forged([](FileIndex& i) {
               i.chunks[0].vertices += 1, i.chunks[0].faces += 2;

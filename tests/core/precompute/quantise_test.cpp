@@ -25,19 +25,19 @@ TEST(SameTriangles, SeesOrientationPositionAndCount) {
 }
 
 TEST(ChooseLattice, TakesTheBitsAskedFor) {
-  const auto lattice = choose_lattice(shapes::icosphere(3), 11);
+  const auto lattice = choose_lattice(shapes::icosphere(3), shapes::icosphere(3).positions, 11);
   ASSERT_TRUE(lattice.ok());
   EXPECT_EQ(lattice->bits, 11);
 }
 
 TEST(ChooseLattice, RefusesMoreBitsThanDoublesCanTellApart) {
   const IndexedMesh far = shapes::moved(shapes::icosphere(2), {1e15, 0, 0});
-  EXPECT_FALSE(choose_lattice(far, 20).ok());
+  EXPECT_FALSE(choose_lattice(far, far.positions, 20).ok());
 }
 
 TEST(ChooseLattice, ByItselfStaysWithinWhatDoublesCanTellApart) {
   const IndexedMesh far = shapes::moved(shapes::icosphere(2), {1e15, 0, 0});
-  const auto lattice = choose_lattice(far, std::nullopt);
+  const auto lattice = choose_lattice(far, far.positions, std::nullopt);
   ASSERT_TRUE(lattice.ok()) << lattice.error().message;
   EXPECT_GE(lattice->step, 0.125);
 }
@@ -45,7 +45,7 @@ TEST(ChooseLattice, ByItselfStaysWithinWhatDoublesCanTellApart) {
 TEST(ChooseLattice, KeepsAMeshFarFromTheOrigin) {
   const IndexedMesh near = shapes::icosphere(4);
   const IndexedMesh far = shapes::moved(near, {5e6, 5e6, 0});
-  const auto lattice = choose_lattice(far, std::nullopt);
+  const auto lattice = choose_lattice(far, far.positions, std::nullopt);
   ASSERT_TRUE(lattice.ok());
   const std::vector<Vec3i> points = quantise(far.positions, *lattice);
   for (std::size_t v = 0; v < points.size(); ++v) {

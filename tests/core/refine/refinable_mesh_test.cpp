@@ -82,6 +82,37 @@ TEST(RefinableMesh, AVertexWishIsMetExactly) {
   EXPECT_TRUE(mesh.is_finest());
 }
 
+// A tetrahedron, whose vertex 0 is split twice and moves the second time.
+RefinableMesh moved_tetrahedron() {
+  RefinableMesh mesh = *RefinableMesh::from_base(
+      {{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
+  EXPECT_TRUE(mesh.append({{HalfEdgeId(0), 1, SplitKind::interior}, {1, 1, 1}}).ok());
+  EXPECT_TRUE(mesh.append({{HalfEdgeId(3), 1, SplitKind::interior}, {2, 2, 2}, {5, 0, 7}}).ok());
+  return mesh;
+}
+
+TEST(RefinableMesh, ARelocationIsUndoneWithItsSplit) {
+  RefinableMesh mesh = moved_tetrahedron();
+  EXPECT_EQ(mesh.positions()[0], (Vec3i{5, 0, 7}));
+  for (const std::uint32_t splits : {1u, 0u, 1u}) {
+    mesh.set_splits(splits);
+    EXPECT_EQ(mesh.positions()[0], (Vec3i{0, 0, 0}));
+  }
+  mesh.set_finest();
+  EXPECT_EQ(mesh.positions()[0], (Vec3i{5, 0, 7}));
+}
+
+TEST(RefinableMesh, AForgottenRelocationMayBeReplacedByAnother) {
+  RefinableMesh mesh = moved_tetrahedron();
+  mesh.set_splits(1);
+  mesh.forget_finer();
+  ASSERT_TRUE(mesh.append({{HalfEdgeId(3), 1, SplitKind::interior}, {3, 3, 3}, {8, 8, 8}}).ok());
+  EXPECT_EQ(mesh.positions()[0], (Vec3i{8, 8, 8}));
+  EXPECT_EQ(mesh.positions()[5], (Vec3i{3, 3, 3}));
+  mesh.set_splits(0);
+  EXPECT_EQ(mesh.positions()[0], (Vec3i{0, 0, 0}));
+}
+
 TEST(RefinableMesh, RefusesAnImpossibleSplitAndStaysAsItWas) {
   RefinableMesh mesh = decoded(encode_shape("ball", shapes::icosphere(2)));
   const LatticeMesh before = mesh.snapshot();

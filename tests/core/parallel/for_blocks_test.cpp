@@ -1,4 +1,4 @@
-#include "core/decimate/parallel.h"
+#include "core/parallel/for_blocks.h"
 
 #include <gtest/gtest.h>
 

@@ -11,10 +11,10 @@
 namespace pmesh {
 
 /// Calls work(begin, end) for blocks that cover [0, count), each once, on up to `threads` threads,
-/// the caller's included. `work` must not throw, and its blocks must not depend on each other.
-template <class Work>
+/// the caller's included. Every block begins at a multiple of kBlock and, but for the last, is as
+/// long. `work` must not throw, and its blocks must not depend on each other.
+template <std::uint64_t kBlock = 1 << 12, class Work>
 void for_blocks(std::uint32_t count, unsigned threads, const Work& work) {
-  constexpr std::uint64_t kBlock = 1 << 12;
   std::atomic<std::uint64_t> cursor = 0;
   const auto run = [&] {
     while (true) {

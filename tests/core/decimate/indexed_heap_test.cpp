@@ -1,4 +1,4 @@
-#include "core/decimate/vertex_heap.h"
+#include "core/decimate/indexed_heap.h"
 
 #include <algorithm>
 #include <map>
@@ -8,6 +8,8 @@
 
 namespace pmesh {
 namespace {
+
+using Heap = IndexedHeap<VertexId>;
 
 constexpr std::uint32_t kVertices = 300;
 
@@ -31,9 +33,9 @@ class NaiveHeap {
   std::map<VertexId, double> keys_;
 };
 
-TEST(VertexHeap, DoesWhatANaiveHeapDoes) {
+TEST(IndexedHeap, DoesWhatANaiveHeapDoes) {
   std::mt19937 random(7);
-  VertexHeap heap;
+  Heap heap;
   heap.build({}, kVertices);
   NaiveHeap naive;
   for (int step = 0; step < 20'000; ++step) {
@@ -47,38 +49,38 @@ TEST(VertexHeap, DoesWhatANaiveHeapDoes) {
       heap.erase(v);
       naive.erase(v);
     } else if (!heap.empty()) {
-      EXPECT_EQ(heap.pop().vertex, naive.pop());
+      EXPECT_EQ(heap.pop().element, naive.pop());
     }
     ASSERT_EQ(heap.empty(), naive.empty());
   }
 }
 
-TEST(VertexHeap, BuildOrdersWhatItIsGiven) {
+TEST(IndexedHeap, BuildOrdersWhatItIsGiven) {
   std::mt19937 random(8);
-  std::vector<VertexHeap::Entry> entries;
+  std::vector<Heap::Entry> entries;
   for (std::uint32_t v = 0; v < kVertices; ++v)
     entries.push_back({double(random() % 9), VertexId(v)});
-  VertexHeap heap;
+  Heap heap;
   heap.build(entries, kVertices);
   std::sort(entries.begin(), entries.end());
-  for (const VertexHeap::Entry& entry : entries) EXPECT_EQ(heap.pop().vertex, entry.vertex);
+  for (const Heap::Entry& entry : entries) EXPECT_EQ(heap.pop().element, entry.element);
   EXPECT_TRUE(heap.empty());
 }
 
-TEST(VertexHeap, BuildTakesSubsets) {
-  std::vector<VertexHeap::Entry> entries;
+TEST(IndexedHeap, BuildTakesSubsets) {
+  std::vector<Heap::Entry> entries;
   for (std::uint32_t v = 10; v <= 70; v += 10) entries.push_back({100.0 - v, VertexId(v)});
-  VertexHeap heap;
+  Heap heap;
   heap.build(entries, kVertices);
   heap.erase(VertexId(8));  // not in it
   heap.set(VertexId(8), 35);
-  EXPECT_EQ(heap.pop().vertex, VertexId(70));
-  EXPECT_EQ(heap.pop().vertex, VertexId(8));
-  EXPECT_EQ(heap.pop().vertex, VertexId(60));
+  EXPECT_EQ(heap.pop().element, VertexId(70));
+  EXPECT_EQ(heap.pop().element, VertexId(8));
+  EXPECT_EQ(heap.pop().element, VertexId(60));
   EXPECT_EQ(heap.size(), 5u);
 }
 
-TEST(VertexHeap, TieRanksAreDistinct) {
+TEST(IndexedHeap, TieRanksAreDistinct) {
   std::vector<std::uint32_t> ranks;
   for (std::uint32_t v = 0; v < 100'000; ++v) ranks.push_back(tie_rank(VertexId(v)));
   std::sort(ranks.begin(), ranks.end());

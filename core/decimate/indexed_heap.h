@@ -1,5 +1,5 @@
-// An indexed 4-ary heap of vertices, least key first, equal keys by tie_rank(): a total order, so
-// that what is popped never depends on the history of the heap.
+// An indexed 4-ary heap of vertices, edges or faces, least key first, equal keys by tie_rank(): a
+// total order, so that what is popped never depends on the history of the heap.
 #pragma once
 
 #include <algorithm>
@@ -11,27 +11,31 @@
 
 namespace pmesh {
 
-/// Orders vertices of equal keys. On a flat surface all keys are zero; taken in the order of their
-/// ids, vertices would be swept into a few of enormous valence. Distinct for distinct vertices.
-constexpr std::uint32_t tie_rank(VertexId v) { return v.value * 0x9E37'79B1u; }
+/// Orders elements of equal keys. On a flat surface all keys are zero; taken in the order of their
+/// ids, vertices would be swept into a few of enormous valence. Distinct for distinct ids.
+template <class Tag>
+constexpr std::uint32_t tie_rank(Id<Tag> id) {
+  return id.value * 0x9E37'79B1u;
+}
 
-/// 20 bytes a vertex. Keys must not be NaN.
-class VertexHeap {
+/// 16 bytes an element and 4 bytes an id. Keys must not be NaN.
+template <class ElementId>
+class IndexedHeap {
  public:
   struct Entry {
     double key = 0;
-    VertexId vertex;
+    ElementId element;
 
     friend bool operator<(const Entry& a, const Entry& b) {
-      return a.key < b.key || (a.key == b.key && tie_rank(a.vertex) < tie_rank(b.vertex));
+      return a.key < b.key || (a.key == b.key && tie_rank(a.element) < tie_rank(b.element));
     }
   };
 
-  /// Replaces the contents by `entries`, of vertices below `vertex_count`, each once. O(n).
-  void build(std::vector<Entry> entries, std::uint32_t vertex_count) {
+  /// Replaces the contents by `entries`, of ids below `id_count`, each once. O(n).
+  void build(std::vector<Entry> entries, std::uint32_t id_count) {
     entries_ = std::move(entries);
-    slots_.assign(vertex_count, kNoIndex);
-    for (std::uint32_t slot = 0; slot < size(); ++slot) slots_[vertex_at(slot)] = slot;
+    slots_.assign(id_count, kNoIndex);
+    for (std::uint32_t slot = 0; slot < size(); ++slot) slot_of(entries_[slot].element) = slot;
     for (std::uint32_t slot = size() / kArity + 1; slot-- > 0;) {
       if (slot < size()) sift_down(slot, entries_[slot]);
     }
@@ -43,25 +47,27 @@ class VertexHeap {
 
   Entry pop() {
     const Entry least = top();
-    erase(least.vertex);
+    erase(least.element);
     return least;
   }
 
-  /// Inserts `vertex`, or changes its key.
-  void set(VertexId vertex, double key) {
-    std::uint32_t slot = slots_[vertex.value];
+  bool contains(ElementId element) const { return slots_[element.value] != kNoIndex; }
+
+  /// Inserts `element`, or changes its key.
+  void set(ElementId element, double key) {
+    std::uint32_t slot = slot_of(element);
     if (slot == kNoIndex) {
       slot = size();
       entries_.emplace_back();
     }
-    place(slot, {key, vertex});
+    place(slot, {key, element});
   }
 
-  /// Takes `vertex` out, if it is in.
-  void erase(VertexId vertex) {
-    const std::uint32_t slot = slots_[vertex.value];
+  /// Takes `element` out, if it is in.
+  void erase(ElementId element) {
+    const std::uint32_t slot = slot_of(element);
     if (slot == kNoIndex) return;
-    slots_[vertex.value] = kNoIndex;
+    slot_of(element) = kNoIndex;
     const Entry last = entries_.back();
     entries_.pop_back();
     if (slot < size()) place(slot, last);
@@ -70,8 +76,7 @@ class VertexHeap {
  private:
   static constexpr std::uint32_t kArity = 4;
 
-  std::uint32_t& vertex_slot(VertexId v) { return slots_[v.value]; }
-  std::uint32_t vertex_at(std::uint32_t slot) const { return entries_[slot].vertex.value; }
+  std::uint32_t& slot_of(ElementId element) { return slots_[element.value]; }
 
   // Puts `entry` into the heap, whose free slot is `slot`.
   void place(std::uint32_t slot, Entry entry) {
@@ -84,7 +89,7 @@ class VertexHeap {
 
   void store(std::uint32_t slot, const Entry& entry) {
     entries_[slot] = entry;
-    vertex_slot(entry.vertex) = slot;
+    slot_of(entry.element) = slot;
   }
 
   void sift_up(std::uint32_t slot, Entry entry) {
@@ -114,7 +119,7 @@ class VertexHeap {
   }
 
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> slots_;  // by vertex; kNoIndex: not in the heap
+  std::vector<std::uint32_t> slots_;  // by id; kNoIndex: not in the heap
 };
 
 }  // namespace pmesh

@@ -1,0 +1,183 @@
+// Edge collapses with free placement for the engine: every edge is queued, under the lesser of its
+// half-edges' ids. Private to core/decimate; see engine.h for what an engine asks of its
+// candidates.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/decimate/edge_star.h"
+#include "core/decimate/legality.h"
+#include "core/decimate/one_ring.h"
+#include "core/decimate/working_mesh.h"
+
+namespace pmesh {
+
+template <EdgeMetric M>
+class EdgeCandidates {
+ public:
+  using ElementId = HalfEdgeId;
+  static constexpr std::uint32_t kCollapsesPerStep = 1;
+
+  // What one thread needs to evaluate an edge.
+  struct Scratch {
+    PhaseMark mark;
+    EdgeStar star;
+    Placement placement;
+    OneRing ring;  // neighbours only
+  };
+
+  EdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
+      : work_(work), metric_(metric), locked_(locked), ring_mark_(work.mesh().vertex_slots()) {
+    metric_.start(work.mesh(), work.positions(), work.frame());
+  }
+
+  std::uint32_t slots() const { return 3 * work_.mesh().face_slots(); }
+
+  // The cost of the edge. The link condition and fold-overs are left until it is popped.
+  double evaluate(HalfEdgeId edge, double /*popped*/, Scratch& scratch) {
+    if (!is_candidate(edge)) return kRefused;
+    scratch.mark.enter(DecimationPhase::gather);
+    gather_ends(work_, edge, scratch.star);
+    if (!may_merge(scratch.star)) return kRefused;
+    if (M::kNeedsStar && !gather_star(work_, scratch.star)) return kRefused;
+    scratch.mark.enter(DecimationPhase::cost);
+    scratch.placement = metric_.place(scratch.star);
+    return scratch.placement.cost;
+  }
+
+  // What a popped edge is worth that was not collapsed: nothing, until a vertex near it has
+  // changed; or its cost, if that had risen unnoticed since it was queued.
+  double evaluate_legal(HalfEdgeId edge, double popped, Scratch& scratch) {
+    const double cost = evaluate(edge, popped, scratch);
+    return cost > popped ? cost : kRefused;
+  }
+
+  // False if the popped edge cannot be collapsed at the cost it was queued with.
+  bool collapse(HalfEdgeId edge, double popped, Scratch& scratch) {
+    if (!(evaluate(edge, popped, scratch) <= popped)) return false;
+    scratch.mark.enter(DecimationPhase::legality);
+    EdgeStar& star = scratch.star;
+    const auto [removed, kept] = choose_removed(star);
+    if (!gather_neighbours(work_.mesh(), removed, scratch.ring)) return false;
+    if (!link_condition_holds(work_.mesh(), scratch.ring, scratch.ring.index_of(kept))) {
+      return false;
+    }
+    if (!M::kNeedsStar && !gather_star(work_, star)) return false;
+    const Vec3d position = scratch.placement.position;
+    if (!may_fold_over_ && folds_over(star, position)) return false;
+
+    scratch.mark.enter(DecimationPhase::collapse);
+    note_gone(edge);
+    metric_.fold(star, removed, kept, position);
+    work_.collapse(removed, edge, work_.frame().from_unit(star.origin + position));
+    note_changed(kept);
+    return true;
+  }
+
+  std::span<const HalfEdgeId> gone() const { return gone_; }
+  std::span<const HalfEdgeId> changed() const { return changed_; }
+  std::span<const HalfEdgeId> touched() const { return touched_; }
+
+  // Gives up the next test, if there is one left.
+  std::optional<Relaxation> relax() {
+    if (std::exchange(may_fold_over_, true)) return std::nullopt;
+    return Relaxation::fold_over;
+  }
+
+ private:
+  HalfEdgeId edge_of(HalfEdgeId h) const {
+    const HalfEdgeId twin = work_.mesh().twin(h);
+    return twin.valid() ? std::min(h, twin) : h;
+  }
+
+  bool is_candidate(HalfEdgeId h) const {
+    return work_.mesh().is_live(HalfEdgeMesh::face(h)) && edge_of(h) == h;
+  }
+
+  // Border vertices merge along their border only. (An interior vertex may merge into it.)
+  bool may_merge(const EdgeStar& star) const {
+    if (!locked_.empty() && (locked_[star.a.value] | locked_[star.b.value]) != 0) return false;
+    return !(star.a_on_border && star.b_on_border) || work_.mesh().is_border(star.half_edge);
+  }
+
+  // The border vertex is kept; else the one of more faces, so that few faces move.
+  std::pair<VertexId, VertexId> choose_removed(const EdgeStar& star) const {
+    const std::pair ab(star.a, star.b), ba(star.b, star.a);
+    if (star.a_on_border != star.b_on_border) return star.a_on_border ? ba : ab;
+    return valence(star.a) <= valence(star.b) ? ab : ba;
+  }
+
+  std::uint32_t valence(VertexId v) const {
+    std::uint32_t count = 0;
+    for_each_outgoing(v, [&](HalfEdgeId) { ++count; });
+    return count;
+  }
+
+  // At most the first EdgeStar::kMaxFaces half-edges: edges of greater hubs are no candidates.
+  template <class Visit>
+  void for_each_outgoing(VertexId v, const Visit& visit) const {
+    const HalfEdgeId first = work_.mesh().outgoing(v);
+    HalfEdgeId h = first;
+    std::uint32_t count = 0;
+    do {
+      visit(h);
+      h = work_.mesh().rotate_ccw(h);
+    } while (h.valid() && h != first && ++count < EdgeStar::kMaxFaces);
+  }
+
+  // Every edge of `v` with its other end.
+  template <class Visit>
+  void for_each_edge(VertexId v, const Visit& visit) const {
+    HalfEdgeId last;
+    for_each_outgoing(v, [&](HalfEdgeId h) {
+      visit(edge_of(h), work_.mesh().target(h));
+      last = HalfEdgeMesh::prev(h);
+    });
+    if (work_.mesh().is_border(last)) visit(last, work_.mesh().origin(last));
+  }
+
+  // The edges of the two faces that a collapse of `edge` deletes. One of each face's outer edges
+  // survives, under an id that may be another: it is among the changed ones.
+  void note_gone(HalfEdgeId edge) {
+    gone_.clear();
+    const HalfEdgeId twin = work_.mesh().twin(edge);
+    for (const HalfEdgeId h : {edge, twin}) {
+      if (!h.valid()) continue;
+      gone_.push_back(edge_of(HalfEdgeMesh::next(h)));
+      gone_.push_back(edge_of(HalfEdgeMesh::prev(h)));
+    }
+  }
+
+  void note_changed(VertexId kept) {
+    changed_.clear();
+    touched_.clear();
+    ++step_;
+    for_each_edge(kept, [&](HalfEdgeId edge, VertexId neighbour) {
+      changed_.push_back(edge);
+      ring_mark_[neighbour.value] = step_;
+    });
+    ring_mark_[kept.value] = step_;
+    std::vector<HalfEdgeId>& around = M::kReach == EdgeReach::ring ? changed_ : touched_;
+    for_each_edge(kept, [&](HalfEdgeId, VertexId neighbour) {
+      for_each_edge(neighbour, [&](HalfEdgeId edge, VertexId other) {
+        const bool seen_twice = ring_mark_[other.value] == step_;
+        if (other != kept && !(seen_twice && other < neighbour)) around.push_back(edge);
+      });
+    });
+  }
+
+  WorkingMesh& work_;
+  M metric_;
+  std::span<const std::uint8_t> locked_;
+  std::vector<HalfEdgeId> gone_, changed_, touched_;
+  std::vector<std::uint32_t> ring_mark_;  // by vertex: the last step that had it in the ring
+  std::uint32_t step_ = 0;
+  bool may_fold_over_ = false;
+};
+
+}  // namespace pmesh

@@ -1,0 +1,161 @@
+// Half-edge collapses for the engine: every vertex is queued once, with its best head.
+// Private to core/decimate; see engine.h for what an engine asks of its candidates.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/decimate/indexed_heap.h"
+#include "core/decimate/legality.h"
+#include "core/decimate/metric.h"
+#include "core/decimate/one_ring.h"
+#include "core/decimate/working_mesh.h"
+
+namespace pmesh {
+
+template <HalfEdgeMetric M>
+class HalfEdgeCandidates {
+ public:
+  using ElementId = VertexId;
+  static constexpr std::uint32_t kCollapsesPerStep = 1;
+
+  // What one thread needs to evaluate a vertex.
+  struct Scratch {
+    PhaseMark mark;
+    OneRing ring;
+    typename M::Prepared prepared;
+    MovedFaces moved;
+    std::array<double, OneRing::kMaxFaces + 1> costs;
+  };
+
+  HalfEdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
+      : work_(work), metric_(metric), locked_(locked), heads_(work.mesh().vertex_slots()) {
+    metric_.start(work.mesh(), work.positions(), work.frame());
+  }
+
+  std::uint32_t slots() const { return work_.mesh().vertex_slots(); }
+
+  // The key of `v`'s cheapest candidate, which is legal but for the link condition (and, if the
+  // metric does not look at moved faces, for fold-overs). That needs the rings of v's neighbours
+  // and waits until v is popped: it refuses few, and a refusal only raises the cost.
+  double evaluate(VertexId v, double popped, Scratch& scratch) {
+    VertexId& head = heads_[v.value] = VertexId();
+    if (!work_.mesh().is_live(v) || !gather(v, scratch)) return kRefused;
+    scratch.mark.enter(DecimationPhase::cost);
+    price(scratch);
+    return choose(scratch, least(scratch), popped, head);
+  }
+
+  // Evaluates the popped vertex `v`, whose best candidate proved illegal, among its legal ones. Its
+  // key is what it would have been had that been known before.
+  double evaluate_legal(VertexId v, double popped, Scratch& scratch) {
+    VertexId& head = heads_[v.value] = VertexId();
+    if (!gather(v, scratch)) return kRefused;
+    price(scratch);
+    std::uint32_t best = least(scratch);
+    while (best != kNoIndex && !is_legal(scratch, best)) {
+      scratch.costs[best] = kRefused;
+      best = least(scratch);
+    }
+    return std::max(popped, choose(scratch, best, 0, head));
+  }
+
+  // Collapses the popped vertex into the head that its evaluation chose; false if that is illegal.
+  bool collapse(VertexId removed, double /*popped*/, Scratch& scratch) {
+    scratch.mark.enter(DecimationPhase::legality);
+    const VertexId kept = heads_[removed.value];
+    [[maybe_unused]] const bool gathered = gather_neighbours(work_.mesh(), removed, scratch.ring);
+    assert(gathered);
+    if (!is_legal(scratch, scratch.ring.index_of(kept))) return false;
+    scratch.mark.enter(DecimationPhase::collapse);
+    changed_.assign(scratch.ring.ids.begin(), scratch.ring.ids.begin() + scratch.ring.neighbours);
+    work_.collapse(removed, work_.mesh().find_edge(removed, kept));
+    metric_.fold(removed, kept);
+    return true;
+  }
+
+  // After a collapse: elements that are no more, those to evaluate, and those to evaluate if they
+  // are not in the queue.
+  std::span<const VertexId> gone() const { return {}; }
+  std::span<const VertexId> changed() const { return changed_; }
+  std::span<const VertexId> touched() const { return {}; }
+
+  // Gives up the next test, if there is one left.
+  std::optional<Relaxation> relax() {
+    if (std::exchange(may_fold_over_, true)) return std::nullopt;
+    return Relaxation::fold_over;
+  }
+
+ private:
+  static constexpr bool kMovesFaces = M::kGeometry == RingGeometry::moved_faces;
+
+  // False if `v` must not be removed.
+  bool gather(VertexId v, Scratch& scratch) const {
+    scratch.mark.enter(DecimationPhase::gather);
+    if (!locked_.empty() && locked_[v.value] != 0) return false;
+    if (!gather_neighbours(work_.mesh(), v, scratch.ring)) return false;
+    gather_positions(work_, scratch.ring);
+    if constexpr (M::kGeometry != RingGeometry::neighbours) gather_faces(scratch.ring);
+    return true;
+  }
+
+  // The costs of all candidates of the gathered vertex.
+  void price(Scratch& scratch) const {
+    auto& [mark, ring, prepared, moved, costs] = scratch;
+    prepared = metric_.prepare(ring);
+    for (std::uint32_t head = 0; head < ring.neighbours; ++head) {
+      costs[head] = kRefused;
+      if (!may_move_to(ring, head)) continue;
+      if constexpr (kMovesFaces) {
+        move_faces(ring, head, moved);
+        if (!may_fold_over_ && folds_over(ring, moved)) continue;
+      }
+      costs[head] = metric_.cost(ring, prepared, head, moved);
+    }
+  }
+
+  // The neighbour of the least finite cost, or kNoIndex.
+  static std::uint32_t least(const Scratch& scratch) {
+    const auto& costs = scratch.costs;
+    const OneRing& ring = scratch.ring;
+    std::uint32_t best = kNoIndex;
+    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
+      if (!(costs[i] < kRefused)) continue;
+      if (best == kNoIndex || costs[i] < costs[best] ||
+          (costs[i] == costs[best] && tie_rank(ring.ids[i]) < tie_rank(ring.ids[best]))) {
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  double choose(const Scratch& scratch, std::uint32_t best, double popped, VertexId& head) const {
+    if (best == kNoIndex) return kRefused;
+    head = scratch.ring.ids[best];
+    return metric_.priority(scratch.prepared, scratch.costs[best], popped);
+  }
+
+  // For a candidate of finite cost, whose neighbours were gathered.
+  bool is_legal(Scratch& scratch, std::uint32_t head) const {
+    if (!link_condition_holds(work_.mesh(), scratch.ring, head)) return false;
+    if (kMovesFaces || may_fold_over_) return true;
+    gather_positions(work_, scratch.ring);
+    gather_faces(scratch.ring);
+    move_faces(scratch.ring, head, scratch.moved);
+    return !folds_over(scratch.ring, scratch.moved);
+  }
+
+  WorkingMesh& work_;
+  M metric_;
+  std::span<const std::uint8_t> locked_;
+  std::vector<VertexId> heads_;  // by vertex in the queue: the kept vertex of its best candidate
+  std::vector<VertexId> changed_;
+  bool may_fold_over_ = false;
+};
+
+}  // namespace pmesh

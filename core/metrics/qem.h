@@ -1,0 +1,79 @@
+// QEM: M. Garland and P. S. Heckbert, "Surface simplification using quadric error metrics",
+// SIGGRAPH 1997. A vertex carries the sum of the quadrics of its input faces' planes, weighted by
+// area, and of planes upright on its border edges; a collapse costs what the two ends' quadrics sum
+// up to at the kept vertex's place, which is the head (subset) or the least of the sum (solved).
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "core/decimate/edge_star.h"
+#include "core/decimate/metric.h"
+#include "core/metrics/quadric.h"
+
+namespace pmesh {
+
+/// By vertex, the quadric of its planes in the unit frame (sections 5 and 6 of the paper).
+class QuadricField {
+ public:
+  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame);
+  const Quadric& operator[](VertexId v) const { return quadrics_[v.value]; }
+  void fold(VertexId removed, VertexId kept) { quadrics_[kept.value] += quadrics_[removed.value]; }
+
+ private:
+  std::vector<Quadric> quadrics_;
+};
+
+/// Positions of every LOD are a subset of the input's.
+class QemSubset {
+ public:
+  static constexpr std::string_view kName = "qem";
+  static constexpr RingGeometry kGeometry = RingGeometry::neighbours;
+
+  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame) {
+    quadrics_.start(mesh, positions, frame);
+  }
+
+  struct Prepared {
+    Quadric centre;  ///< The centre's, relative to it.
+  };
+  Prepared prepare(const OneRing& ring) const {
+    return {quadrics_[ring.centre].relative_to(ring.origin)};
+  }
+
+  /// Equation of section 4: (Q1 + Q2)(head).
+  double cost(const OneRing& ring, const Prepared& prepared, std::uint32_t head,
+              const MovedFaces& moved) const;
+
+  double priority(const Prepared& /*prepared*/, double cost, double /*popped*/) const {
+    return cost;
+  }
+  void fold(VertexId removed, VertexId kept) { quadrics_.fold(removed, kept); }
+
+ private:
+  QuadricField quadrics_;
+};
+
+/// The merged vertex lies where the edge's quadric is least (equation 1).
+class QemSolved {
+ public:
+  static constexpr std::string_view kName = "qem";
+  static constexpr EdgeReach kReach = EdgeReach::merged;
+  static constexpr bool kNeedsStar = false;
+
+  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame) {
+    quadrics_.start(mesh, positions, frame);
+  }
+  Placement place(const EdgeStar& star) const;
+  void fold(const EdgeStar& /*star*/, VertexId removed, VertexId kept, Vec3d /*position*/) {
+    quadrics_.fold(removed, kept);
+  }
+
+ private:
+  QuadricField quadrics_;
+};
+
+static_assert(HalfEdgeMetric<QemSubset>);
+static_assert(EdgeMetric<QemSolved>);
+
+}  // namespace pmesh

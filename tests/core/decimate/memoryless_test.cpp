@@ -1,0 +1,100 @@
+#include "core/metrics/memoryless.h"
+
+#include <gtest/gtest.h>
+
+#include "core/metrics/memoryless_qem.h"
+#include "tests/core/decimate/rings.h"
+#include "tests/fixtures/shapes.h"
+
+namespace pmesh {
+namespace {
+
+EdgeStar star_of(const WorkingMesh& work, std::uint32_t a, std::uint32_t b) {
+  EdgeStar star;
+  gather_ends(work, work.mesh().find_edge(VertexId(a), VertexId(b)), star);
+  EXPECT_TRUE(gather_star(work, star));
+  return star;
+}
+
+// Six times the volume between the surface of the star and its midpoint, once the ends are at
+// `position` (which must be what the star's faces are then measured from).
+double volume(const EdgeStar& star, const Vec3d* position) {
+  double sum = 0;
+  for (const EdgeStar::Face& f : star.faces) {
+    sum += dot(position != nullptr ? *position : f.end, cross(f.second, f.third));
+  }
+  if (position != nullptr) return sum;
+  sum += dot(star.position_a, cross(star.position_b, star.apexes[0]));
+  if (!star.on_border()) sum += dot(star.position_b, cross(star.position_a, star.apexes[1]));
+  return sum;
+}
+
+TEST(EdgeStar, ListsTheSurvivingFacesAndTheBorders) {
+  const IndexedMesh mesh = shapes::grid(3, 3);
+  const WorkingMesh work(half_edges(mesh), mesh.positions);
+  const HalfEdgeId corner_edge = work.mesh().outgoing(VertexId(0));
+  const EdgeStar star = star_of(work, 0, work.mesh().target(corner_edge).value);
+  EXPECT_TRUE(star.on_border());
+  EXPECT_TRUE(star.a_on_border && star.b_on_border);
+  EXPECT_EQ(star.borders.size(), 3u);
+}
+
+TEST(EdgeStar, OfAnInteriorEdgeHasAllFacesButTwo) {
+  const IndexedMesh mesh = shapes::icosphere(0);
+  const WorkingMesh work(half_edges(mesh), mesh.positions);
+  const EdgeStar star = star_of(work, 0, work.mesh().target(work.mesh().outgoing(VertexId(0))).value);
+  EXPECT_EQ(star.faces.size(), 5u + 5 - 4);
+  EXPECT_EQ(star.apexes.size(), 2u);
+  EXPECT_TRUE(star.borders.empty());
+}
+
+TEST(Memoryless, PreservesTheVolume) {
+  const IndexedMesh mesh = shapes::bumped(shapes::icosphere(2), 0.05);
+  const WorkingMesh work(half_edges(mesh), mesh.positions);
+  for (std::uint32_t v = 0; v < 20; ++v) {
+    const VertexId neighbour = work.mesh().target(work.mesh().outgoing(VertexId(v)));
+    const EdgeStar star = star_of(work, v, neighbour.value);
+    const Placement placement = Memoryless().place(star);
+    EXPECT_NEAR(volume(star, &placement.position), volume(star, nullptr), 1e-14);
+  }
+}
+
+TEST(Memoryless, CollapseInAPlaneIsFreeAndStaysInIt) {
+  const IndexedMesh mesh = shapes::grid(6, 6);
+  const WorkingMesh work(half_edges(mesh), mesh.positions);
+  const Placement placement = Memoryless().place(star_of(work, 3 * 7 + 3, 3 * 7 + 4));
+  EXPECT_NEAR(placement.cost, 0, 1e-20);
+  EXPECT_NEAR(placement.position.z, 0, 1e-12);
+}
+
+TEST(Memoryless, StraightBorderKeepsItsLine) {
+  const IndexedMesh mesh = shapes::grid(6, 6);
+  const WorkingMesh work(half_edges(mesh), mesh.positions);
+  const EdgeStar star = star_of(work, 2, 3);
+  ASSERT_TRUE(star.on_border());
+  const Placement placement = Memoryless().place(star);
+  const Vec3d along = star.position_b - star.position_a;
+  EXPECT_LT(length(cross(placement.position, along)), 1e-12);
+  EXPECT_NEAR(placement.cost, 0, 1e-15);
+}
+
+TEST(MemorylessQem, CostIsAreaTimesSquaredDistanceToTheFacesLeft) {
+  // Vertex 0 moves one unit along x, off the face in the plane x = 0, whose area is 1/2.
+  const OneRing ring = ring_of(cube_corner(), 0);
+  const MemorylessQem metric;
+  EXPECT_NEAR(metric.cost(ring, metric.prepare(ring), index_in(ring, 1), {}), 0.5, 1e-15);
+}
+
+TEST(MemorylessQem, StraightBordersMayShrinkAndCornersMayNot) {
+  const IndexedMesh mesh = shapes::grid(4, 4);
+  const MemorylessQem metric;
+  const auto border_cost = [&](std::uint32_t v) {
+    const OneRing ring = ring_of(mesh, v);
+    return metric.cost(ring, metric.prepare(ring), 0, {});
+  };
+  EXPECT_NEAR(border_cost(1), 0, 1e-15);
+  EXPECT_GT(border_cost(0), 1e-6);
+}
+
+}  // namespace
+}  // namespace pmesh
