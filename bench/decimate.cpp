@@ -8,7 +8,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -23,6 +25,8 @@
 #include "core/decimate/decimate.h"
 #include "core/io/clean.h"
 #include "core/io/import.h"
+#include "core/metrics/table.h"
+#include "core/precompute/sort_spatially.h"
 
 namespace pmesh::bench {
 namespace {
@@ -37,7 +41,27 @@ constexpr int kRounds = 3;
 IndexedMesh load(const std::string& path) {
   Result<ImportedMesh> imported = import_mesh(path);
   if (!imported) fail(imported.error().message);
-  return clean(std::move(*imported)).mesh;
+  IndexedMesh mesh = clean(std::move(*imported)).mesh;
+  sort_spatially(mesh, 1);
+  return mesh;
+}
+
+// "NAME" or "NAME:parameters".
+AnyMetric parse_metric(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const Result<AnyMetric> metric = make_metric(
+      text.substr(0, colon), colon == std::string_view::npos ? "" : text.substr(colon + 1));
+  if (!metric) fail(metric.error().message);
+  return *metric;
+}
+
+Decimation decimate_by(const AnyMetric& metric, HalfEdgeMesh connectivity,
+                       std::vector<Vec3d> positions,
+                       std::atomic<DecimationPhase>* phase = nullptr) {
+  DecimateOptions options;
+  options.metric = metric;
+  options.phase = phase;
+  return decimate(std::move(connectivity), std::move(positions), options);
 }
 
 HalfEdgeMesh half_edges(const IndexedMesh& mesh) {
@@ -88,22 +112,25 @@ double time_peer(const IndexedMesh&) { return DBL_MAX; }
 #endif
 
 // The best of some rounds in turn.
-Times measure_times(const IndexedMesh& mesh) {
+Times measure_times(const IndexedMesh& mesh, const AnyMetric& metric) {
   Times best;
   for (int round = 0; round < kRounds; ++round) {
     best.peer = std::min(best.peer, time_peer(mesh));
     HalfEdgeMesh connectivity;
     best.build = std::min(best.build, seconds_of([&] { connectivity = half_edges(mesh); }));
-    best.decimate = std::min(best.decimate, seconds_of([&] {
-                               best.base_faces =
-                                   decimate(std::move(connectivity), mesh.positions).report.faces;
-                             }));
+    std::vector<Vec3d> positions = mesh.positions;
+    std::optional<Decimation> result;
+    const double seconds = seconds_of(
+        [&] { result = decimate_by(metric, std::move(connectivity), std::move(positions)); });
+    best.decimate = std::min(best.decimate, seconds);
+    best.base_faces = result->report.faces;
   }
   return best;
 }
 
 // The share of samples that found decimation in each phase.
-std::array<double, kDecimationPhases> measure_phases(const IndexedMesh& mesh) {
+std::array<double, kDecimationPhases> measure_phases(const IndexedMesh& mesh,
+                                                     const AnyMetric& metric) {
   std::array<double, kDecimationPhases> shares{};
   HalfEdgeMesh connectivity = half_edges(mesh);
   std::atomic<DecimationPhase> phase = DecimationPhase::evaluate_all;
@@ -116,9 +143,7 @@ std::array<double, kDecimationPhases> measure_phases(const IndexedMesh& mesh) {
     }
     for (double& share : shares) share /= samples;
   });
-  DecimateOptions options;
-  options.phase = &phase;
-  static_cast<void>(decimate(std::move(connectivity), mesh.positions, options));
+  static_cast<void>(decimate_by(metric, std::move(connectivity), mesh.positions, &phase));
   sampler.request_stop();
   sampler.join();
   return shares;
@@ -129,7 +154,7 @@ struct Memory {
   double above = 0;  // peak above half-edge mesh and positions, bytes a face
 };
 
-Memory measure_memory_here(const std::string& path) {
+Memory measure_memory_here(const std::string& path, const AnyMetric& metric) {
   IndexedMesh mesh = load(path);
   const double faces = static_cast<double>(mesh.triangles.size());
   const std::uint64_t before = resident_bytes();
@@ -138,21 +163,21 @@ Memory measure_memory_here(const std::string& path) {
   mesh.triangles = {};
   const std::uint64_t baseline = resident_bytes();
   reset_peak();
-  static_cast<void>(decimate(std::move(connectivity), mesh.positions));
+  static_cast<void>(decimate_by(metric, std::move(connectivity), std::move(mesh.positions)));
   const std::uint64_t peak = peak_resident_bytes();
   return {static_cast<double>(with_mesh - before) / faces,
           static_cast<double>(peak - baseline) / faces};
 }
 
 // In a process of its own, so that memory left over from other measurements does not hide any.
-Memory measure_memory(const std::string& path) {
+Memory measure_memory(const std::string& path, const AnyMetric& metric) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) fail("no pipe");
   const pid_t child = fork();
   if (child < 0) fail("no process");
   Memory memory;
   if (child == 0) {
-    memory = measure_memory_here(path);
+    memory = measure_memory_here(path, metric);
     _exit(write(ends[1], &memory, sizeof memory) == sizeof memory ? 0 : 1);
   }
   close(ends[1]);
@@ -163,22 +188,25 @@ Memory measure_memory(const std::string& path) {
 }
 
 void print_header() {
-  std::printf("| %-20s | %8s | %5s | %7s | %7s | %7s | %5s | %6s | %6s |", "mesh", "faces", "base",
-              "pmesh", "+ build", "meshopt", "ratio", "mesh B", "peak B");
+  std::printf("| %-20s | %-20s | %8s | %5s | %7s | %7s | %7s | %5s | %6s | %6s |", "mesh", "metric",
+              "faces", "base", "pmesh", "+ build", "meshopt", "ratio", "mesh B", "peak B");
   for (const char* phase : {"all", "heap", "gather", "cost", "legal", "commit"}) {
     std::printf(" %6s |", phase);
   }
   std::printf(
-      "\n|----------------------|---------:|------:|--------:|--------:|--------:|------:|"
+      "\n|----------------------|----------------------|---------:|------:|--------:|--------:|----"
+      "----:|------:|"
       "-------:|-------:|-------:|-------:|-------:|-------:|-------:|-------:|\n");
 }
 
-void print_row(const std::string& path, std::size_t face_count, const Times& times,
-               const Memory& memory, const std::array<double, kDecimationPhases>& phases) {
+void print_row(const std::string& path, const std::string& metric, std::size_t face_count,
+               const Times& times, const Memory& memory,
+               const std::array<double, kDecimationPhases>& phases) {
   const double faces = static_cast<double>(face_count);
-  std::printf("| %-20s | %8zu | %5u | %7.0f | %7.0f |",
-              path.substr(path.find_last_of('/') + 1).c_str(), face_count, times.base_faces,
-              faces / times.decimate / 1000, faces / (times.decimate + times.build) / 1000);
+  std::printf("| %-20s | %-20s | %8zu | %5u | %7.0f | %7.0f |",
+              path.substr(path.find_last_of('/') + 1).c_str(), metric.c_str(), face_count,
+              times.base_faces, faces / times.decimate / 1000,
+              faces / (times.decimate + times.build) / 1000);
   if (times.peer < DBL_MAX) {
     std::printf(" %7.0f | %5.2f |", faces / times.peer / 1000, times.decimate / times.peer);
   } else {
@@ -195,14 +223,30 @@ void print_row(const std::string& path, std::size_t face_count, const Times& tim
 
 int main(int argc, char** argv) {
   using namespace pmesh::bench;
-  if (argc < 2) fail("usage: bench_decimate MESH...");
+  constexpr const char* kUsage = "usage: bench_decimate [--metric NAME[:PARAMETERS]]... MESH...";
+  std::vector<std::string> metrics, meshes;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]) != "--metric") {
+      meshes.emplace_back(argv[i]);
+    } else if (++i < argc) {
+      metrics.emplace_back(argv[i]);
+    } else {
+      fail(kUsage);
+    }
+  }
+  if (meshes.empty()) fail(kUsage);
+  if (metrics.empty()) metrics.emplace_back(pmesh::metric_table().front().name);
 #ifndef PMESH_HAS_MESHOPTIMIZER
   std::printf("meshoptimizer was not found when this was built: no comparison\n");
 #endif
   print_header();
-  for (int i = 1; i < argc; ++i) {
-    const Memory memory = measure_memory(argv[i]);
-    const pmesh::IndexedMesh mesh = load(argv[i]);
-    print_row(argv[i], mesh.triangles.size(), measure_times(mesh), memory, measure_phases(mesh));
+  for (const std::string& path : meshes) {
+    for (const std::string& name : metrics) {
+      const pmesh::AnyMetric metric = parse_metric(name);
+      const Memory memory = measure_memory(path, metric);
+      const pmesh::IndexedMesh mesh = load(path);
+      print_row(path, name, mesh.triangles.size(), measure_times(mesh, metric), memory,
+                measure_phases(mesh, metric));
+    }
   }
 }

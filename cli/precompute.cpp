@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +26,7 @@ struct Options {
   PrecomputeOptions precompute;
   std::map<std::string, std::string> metric_parameters;  // by name, of those given
   int quantization = 0;
+  bool no_measure = false;
   bool force = false;
   bool json = false;
   bool quiet = false;
@@ -45,7 +47,8 @@ class PhaseClock {
   double total() const { return since(started_, Clock::now()); }
 
   static const char* name(PrecomputePhase phase) {
-    constexpr std::array kNames = {"import", "clean", "decimate", "encode", "write", "done"};
+    constexpr std::array kNames = {"import",  "clean", "decimate", "encode",
+                                   "measure", "write", "done"};
     return kNames[static_cast<std::size_t>(phase)];
   }
 
@@ -58,7 +61,7 @@ class PhaseClock {
   PrecomputePhase phase_ = PrecomputePhase::import;
   Clock::time_point started_ = Clock::now();
   Clock::time_point entered_ = started_;
-  std::array<double, 6> seconds_{};
+  std::array<double, 7> seconds_{};
 };
 
 std::uint64_t peak_memory_bytes() {
@@ -79,11 +82,15 @@ Json to_json(const CleanReport& cleaned) {
           {"vertices_added", cleaned.vertices_added}};
 }
 
+Json optional_json(const std::optional<std::uint64_t>& count) {
+  return count ? Json(*count) : Json(nullptr);
+}
+
 Json seconds_json(const PhaseClock& clock) {
   Json seconds;
   for (const PrecomputePhase phase :
        {PrecomputePhase::import, PrecomputePhase::clean, PrecomputePhase::decimate,
-        PrecomputePhase::encode, PrecomputePhase::write}) {
+        PrecomputePhase::encode, PrecomputePhase::measure, PrecomputePhase::write}) {
     seconds[PhaseClock::name(phase)] = clock.seconds(phase);
   }
   seconds["total"] = clock.total();
@@ -104,8 +111,8 @@ Json to_json(const Options& options, const PrecomputeReport& report, const Phase
           {"base_faces", report.base_faces},
           {"base_vertices", report.base_vertices},
           {"base_bytes", report.base_bytes},
-          {"fold_over_relaxed_at",
-           report.fold_over_relaxed_at ? Json(*report.fold_over_relaxed_at) : Json(nullptr)},
+          {"planarity_relaxed_at", optional_json(report.planarity_relaxed_at)},
+          {"fold_over_relaxed_at", optional_json(report.fold_over_relaxed_at)},
           {"quantization", report.lattice.bits},
           {"step", report.lattice.step},
           {"chunks", report.chunks},
@@ -141,6 +148,10 @@ void print_text(const Options& options, const PrecomputeReport& report, const Ph
               number(report.vertices), report.lattice.bits, report.lattice.step);
   std::printf("base mesh: %llu faces, %llu bytes\n", number(report.base_faces),
               number(report.base_bytes));
+  if (report.planarity_relaxed_at) {
+    std::printf("  the planar test was given up below %llu faces\n",
+                number(*report.planarity_relaxed_at));
+  }
   if (report.fold_over_relaxed_at) {
     std::printf("  the fold-over check was relaxed below %llu faces\n",
                 number(*report.fold_over_relaxed_at));
@@ -186,6 +197,7 @@ void add_metric_options(CLI::App& verb, Options& options) {
 int run_precompute(Options& options) {
   options.precompute.metric_parameters = joined(options.metric_parameters);
   if (options.quantization != 0) options.precompute.lattice_bits = options.quantization;
+  options.precompute.measure = !options.no_measure;
   options.precompute.overwrite = options.force ? Overwrite::yes : Overwrite::no;
   const PrecomputeOptions& job = options.precompute;
   if (Status distinct = check_distinct(job.input, job.output); !distinct) {
@@ -228,6 +240,8 @@ void add_precompute(CLI::App& app, int& exit_status) {
   verb->add_option("--threads", job.threads, "Threads; the output does not depend on it")
       ->check(CLI::Range(1u, 1024u))
       ->capture_default_str();
+  verb->add_flag("--no-measure", options->no_measure,
+                 "Leave the error of each level of detail unmeasured");
   verb->add_flag("--force", options->force, "Replace OUT if it exists");
   verb->add_flag("--json", options->json, "Print one JSON object");
   verb->add_flag("--quiet", options->quiet, "Print nothing but errors");

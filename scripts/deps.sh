@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that pmesh needs: deps.sh [build] [test] [demo] [fuzz] [run];
-# the first three by default; `run` is for a machine that gets a built pmesh. Silent when nothing is
-# missing.
+# Installs the Debian 12 packages that pmesh needs: deps.sh [build] [test] [demo] [fuzz] [run]
+# [peers]; the first three by default; `run` is for a machine that gets a built pmesh, `peers` for
+# bench/peers. Silent when nothing is missing.
 set -euo pipefail
 
 build=(cmake g++ ninja-build libboost1.81-dev libcli11-dev libdraco-dev libgtest-dev libspdlog-dev
@@ -10,6 +10,7 @@ test=(clang-format clang-tidy curl jq libmeshoptimizer-dev zstd)
 demo=(ca-certificates curl jq nodejs npm)
 fuzz=(clang libclang-rt-14-dev)
 run=(libdraco7 libspdlog1.10 libssl3)
+peers=(libgl1-mesa-dri libmeshoptimizer-dev libopenmesh-dev meshlab python3 xauth xvfb)
 
 fail() {
   echo "deps.sh: $*" >&2
@@ -50,7 +51,8 @@ for group in "$@"; do
     demo) wanted+=("${demo[@]}") ;;
     fuzz) wanted+=("${fuzz[@]}") ;;
     run) wanted+=("${run[@]}") ;;
-    *) fail "unknown group '$group'; usage: deps.sh [build] [test] [demo] [fuzz] [run]" ;;
+    peers) wanted+=("${peers[@]}") ;;
+    *) fail "unknown group '$group'; usage: deps.sh [build] [test] [demo] [fuzz] [run] [peers]" ;;
   esac
 done
 

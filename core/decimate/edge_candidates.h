@@ -37,6 +37,7 @@ class EdgeCandidates {
   }
 
   std::uint32_t slots() const { return 3 * work_.mesh().face_slots(); }
+  std::uint32_t candidate_guess() const { return work_.mesh().live_faces() / 2 * 3 + 3; }
 
   // The cost of the edge. The link condition and fold-overs are left until it is popped.
   double evaluate(HalfEdgeId edge, double /*popped*/, Scratch& scratch) {
@@ -112,13 +113,13 @@ class EdgeCandidates {
     return valence(star.a) <= valence(star.b) ? ab : ba;
   }
 
+  // The faces of `v`, or some number above EdgeStar::kMaxFaces if there are more than that.
   std::uint32_t valence(VertexId v) const {
     std::uint32_t count = 0;
     for_each_outgoing(v, [&](HalfEdgeId) { ++count; });
     return count;
   }
 
-  // At most the first EdgeStar::kMaxFaces half-edges: edges of greater hubs are no candidates.
   template <class Visit>
   void for_each_outgoing(VertexId v, const Visit& visit) const {
     const HalfEdgeId first = work_.mesh().outgoing(v);
@@ -127,7 +128,7 @@ class EdgeCandidates {
     do {
       visit(h);
       h = work_.mesh().rotate_ccw(h);
-    } while (h.valid() && h != first && ++count < EdgeStar::kMaxFaces);
+    } while (h.valid() && h != first && ++count <= EdgeStar::kMaxFaces);
   }
 
   // Every edge of `v` with its other end.
@@ -153,10 +154,14 @@ class EdgeCandidates {
     }
   }
 
+  // Edges of hubs are no candidates, and stale in the queue until they are popped and dropped.
+  bool is_hub(VertexId v) const { return valence(v) > EdgeStar::kMaxFaces; }
+
   void note_changed(VertexId kept) {
     changed_.clear();
     touched_.clear();
     ++step_;
+    if (is_hub(kept)) return;
     for_each_edge(kept, [&](HalfEdgeId edge, VertexId neighbour) {
       changed_.push_back(edge);
       ring_mark_[neighbour.value] = step_;
@@ -164,6 +169,7 @@ class EdgeCandidates {
     ring_mark_[kept.value] = step_;
     std::vector<HalfEdgeId>& around = M::kReach == EdgeReach::ring ? changed_ : touched_;
     for_each_edge(kept, [&](HalfEdgeId, VertexId neighbour) {
+      if (is_hub(neighbour)) return;
       for_each_edge(neighbour, [&](HalfEdgeId edge, VertexId other) {
         const bool seen_twice = ring_mark_[other.value] == step_;
         if (other != kept && !(seen_twice && other < neighbour)) around.push_back(edge);

@@ -83,7 +83,7 @@ bool gather_star(const WorkingMesh& work, EdgeStar& star) {
 
 bool folds_over(const EdgeStar& star, Vec3d position) {
   return std::any_of(star.faces.begin(), star.faces.end(), [&](const EdgeStar::Face& face) {
-    return turns_over(face.end, face.second, face.third, position);
+    return turns(face.end, face.second, face.third, position, 0);
   });
 }
 

@@ -53,28 +53,43 @@ class Engine {
       popped_ = 0;
       evaluate_all();
       collapse_all();
-      if (faces() < faces_before) relaxed_at(*relaxed) = faces_before;
+      if (faces() < faces_before) note(*relaxed, faces_before);
     }
   }
 
-  std::optional<std::uint32_t>& relaxed_at(Relaxation test) {
-    return test == Relaxation::planarity ? report_.planarity_relaxed_at_faces
-                                         : report_.fold_over_relaxed_at_faces;
+  void note(Relaxation relaxed, std::uint32_t faces_before) {
+    if (relaxed == Relaxation::turn) return;
+    std::optional<std::uint32_t>& first = relaxed == Relaxation::planarity
+                                              ? report_.planarity_relaxed_at_faces
+                                              : report_.fold_over_relaxed_at_faces;
+    if (!first) first = faces_before;
   }
 
+  // A block of elements at a time, so that no key is kept for an element without a candidate.
   void evaluate_all() {
     mark_.enter(DecimationPhase::evaluate_all);
+    constexpr std::uint32_t kBlock = 1 << 18;
     const std::uint32_t count = candidates_.slots();
-    std::vector<typename Heap::Entry> entries(count);
-    for_blocks(count, options_.threads, [&](std::uint32_t begin, std::uint32_t end) {
+    std::vector<typename Heap::Entry> entries;
+    entries.reserve(candidates_.candidate_guess());
+    std::vector<double> keys(std::min(count, kBlock));
+    for (std::uint32_t first = 0; first < count; first += kBlock) {
+      const std::uint32_t length = std::min(kBlock, count - first);
+      evaluate_block(first, length, keys);
+      for (std::uint32_t i = 0; i < length; ++i) {
+        if (keys[i] < kRefused) entries.push_back({keys[i], ElementId(first + i)});
+      }
+    }
+    heap_.build(std::move(entries), count);
+  }
+
+  void evaluate_block(std::uint32_t first, std::uint32_t length, std::vector<double>& keys) {
+    for_blocks(length, options_.threads, [&](std::uint32_t begin, std::uint32_t end) {
       Scratch scratch;
       for (std::uint32_t i = begin; i < end; ++i) {
-        const double key = candidates_.evaluate(ElementId(i), popped_, scratch);
-        if (key < kRefused) entries[i] = {key, ElementId(i)};
+        keys[i] = candidates_.evaluate(ElementId(first + i), popped_, scratch);
       }
     });
-    std::erase_if(entries, [](const auto& entry) { return !entry.element.valid(); });
-    heap_.build(std::move(entries), count);
   }
 
   void collapse_all() {

@@ -39,6 +39,7 @@ class HalfEdgeCandidates {
   }
 
   std::uint32_t slots() const { return work_.mesh().vertex_slots(); }
+  std::uint32_t candidate_guess() const { return work_.mesh().live_vertices(); }
 
   // The key of `v`'s cheapest candidate, which is legal but for the link condition (and, if the
   // metric does not look at moved faces, for fold-overs). That needs the rings of v's neighbours

@@ -7,8 +7,8 @@
 
 namespace pmesh {
 
-/// Tests that are given up, one after the other, if a target cannot be had otherwise.
-enum class Relaxation : std::uint8_t { planarity, fold_over };
+/// Tests that are loosened or given up, one after the other, if a target cannot be had otherwise.
+enum class Relaxation : std::uint8_t { turn, planarity, fold_over };
 
 /// The border rule: a border vertex may only move along its border.
 inline bool may_move_to(const OneRing& ring, std::uint32_t head) {

@@ -29,6 +29,7 @@ class TriangleCandidates {
       : work_(work), metric_(metric), locked_(locked) {}
 
   std::uint32_t slots() const { return work_.mesh().face_slots(); }
+  std::uint32_t candidate_guess() const { return work_.mesh().live_faces(); }
 
   // The cost of the face. Its star is left until it is popped.
   double evaluate(FaceId face, double /*popped*/, Scratch& scratch) {
@@ -50,14 +51,11 @@ class TriangleCandidates {
   bool collapse(FaceId face, double popped, Scratch& scratch) {
     if (!(evaluate(face, popped, scratch) <= popped)) return false;
     scratch.mark.enter(DecimationPhase::legality);
-    const TriangleStar& star = scratch.star;
-    if (!gather_star(work_, scratch.star)) return false;
-    if (!may_bend_ && !metric_.is_planar(star)) return false;
-    if (!link_conditions_hold(star)) return false;
-    if (!may_fold_over_ && folds_over(star)) return false;
+    if (!is_legal(face, scratch.star)) return false;
 
     scratch.mark.enter(DecimationPhase::collapse);
     note_gone(face);
+    const TriangleStar& star = scratch.star;
     const auto [first, second, last] = star.order;
     const VertexId kept = star.corners[last];
     merge(star.corners[first], kept, star.centroid);
@@ -70,11 +68,13 @@ class TriangleCandidates {
   std::span<const FaceId> changed() const { return changed_; }
   std::span<const FaceId> touched() const { return touched_; }
 
-  // Gives up the next test, if there is one left.
+  // Enters the next round, if there is one left.
   std::optional<Relaxation> relax() {
-    if (!std::exchange(may_bend_, true)) return Relaxation::planarity;
-    if (!std::exchange(may_fold_over_, true)) return Relaxation::fold_over;
-    return std::nullopt;
+    if (round_ + 1 < M::kRounds) {
+      return ++round_ < M::kPlanarRounds ? Relaxation::turn : Relaxation::planarity;
+    }
+    if (std::exchange(may_fold_over_, true)) return std::nullopt;
+    return Relaxation::fold_over;
   }
 
  private:
@@ -84,20 +84,30 @@ class TriangleCandidates {
     return (locked_[a.value] | locked_[b.value] | locked_[c.value]) != 0;
   }
 
+  // Gathers the rest of `star`, as far as need be.
+  bool is_legal(FaceId face, TriangleStar& star) const {
+    const bool is_last_round = round_ + 1 == M::kRounds;
+    if (round_ < M::kPlanarRounds && !metric_.is_planar(star)) return false;
+    if (!is_last_round && leaves_valence_three(work_.mesh(), face)) return false;
+    if (!gather_star(work_, star) || !link_conditions_hold(star)) return false;
+    return may_fold_over_ || !turns_faces(star, metric_.least_cosine(round_));
+  }
+
   void merge(VertexId removed, VertexId kept, Vec3d position) {
     work_.collapse(removed, work_.mesh().find_edge(removed, kept), position);
   }
 
-  // At most the first TriangleStar::kMaxFaces half-edges: greater hubs are corners of no candidate.
+  // At most the first TriangleStar::kMaxFaces half-edges. Returns whether there are no more.
   template <class Visit>
-  void for_each_outgoing(VertexId v, const Visit& visit) const {
+  bool for_each_outgoing(VertexId v, const Visit& visit) const {
     const HalfEdgeId first = work_.mesh().outgoing(v);
     HalfEdgeId h = first;
-    std::uint32_t count = 0;
-    do {
+    for (std::uint32_t count = 0; count < TriangleStar::kMaxFaces; ++count) {
       visit(h);
       h = work_.mesh().rotate_ccw(h);
-    } while (h.valid() && h != first && ++count < TriangleStar::kMaxFaces);
+      if (!h.valid() || h == first) return true;
+    }
+    return false;
   }
 
   void note_gone(FaceId face) {
@@ -116,16 +126,24 @@ class TriangleCandidates {
       changed_.push_back(HalfEdgeMesh::face(h));
       const HalfEdgeId across = work_.mesh().twin(HalfEdgeMesh::next(h));
       if (across.valid()) changed_.push_back(HalfEdgeMesh::face(across));
-      for_each_outgoing(work_.mesh().target(h),
-                        [&](HalfEdgeId outer) { touched_.push_back(HalfEdgeMesh::face(outer)); });
+      touch_faces(work_.mesh().target(h));
     });
+  }
+
+  // No face of a border vertex or of a hub is a candidate.
+  void touch_faces(VertexId v) {
+    if (work_.mesh().is_border(v)) return;
+    const std::size_t before = touched_.size();
+    const bool is_whole =
+        for_each_outgoing(v, [&](HalfEdgeId h) { touched_.push_back(HalfEdgeMesh::face(h)); });
+    if (!is_whole) touched_.resize(before);
   }
 
   WorkingMesh& work_;
   M metric_;
   std::span<const std::uint8_t> locked_;
   std::vector<FaceId> gone_, changed_, touched_;
-  bool may_bend_ = false;
+  std::uint32_t round_ = 0;
   bool may_fold_over_ = false;
 };
 

@@ -37,7 +37,7 @@ void choose_order(TriangleStar& star) {
 // Whether the face of corner `i` and its neighbours x and y is there after the collapse that moves
 // the corner: the first moves the first and the last in order, the second then the other one.
 bool survives(const TriangleStar& star, std::uint32_t i, VertexId x, VertexId y) {
-  const auto [first, second, last] = star.order;
+  const std::uint32_t first = star.order[0], last = star.order[2];
   const auto has = [&](std::uint32_t corner) {
     return x == star.corners[corner] || y == star.corners[corner];
   };
@@ -92,22 +92,40 @@ bool gather_star(const WorkingMesh& work, TriangleStar& star) {
 }
 
 bool link_conditions_hold(const TriangleStar& star) {
-  const auto [i, j, k] = star.order;
-  const std::vector<VertexId>&first = star.rings[i], &second = star.rings[j], &last = star.rings[k];
+  const std::vector<VertexId>& first = star.rings[star.order[0]];
+  const std::vector<VertexId>& second = star.rings[star.order[1]];
+  const std::vector<VertexId>& last = star.rings[star.order[2]];
   const auto common =
       std::count_if(first.begin(), first.end(), [&](VertexId v) { return contains(last, v); });
   if (common != 2 || is_tetrahedron(first.size(), last.size())) return false;
 
+  const VertexId removed = star.corners[star.order[0]], kept = star.corners[star.order[2]];
   const auto then_common = std::count_if(second.begin(), second.end(), [&](VertexId v) {
-    const bool is_corner = v == star.corners[i] || v == star.corners[k];
-    return !is_corner && (contains(first, v) || contains(last, v));
+    return v != removed && v != kept && (contains(first, v) || contains(last, v));
   });
   return then_common == 2 && !is_tetrahedron(second.size() - 1, first.size() + last.size() - 4);
 }
 
-bool folds_over(const TriangleStar& star) {
-  return std::any_of(star.faces.begin(), star.faces.end(), [](const TriangleStar::Face& face) {
-    return face.moves && turns_over(face.corner, face.second, face.third, {});
+bool leaves_valence_three(const HalfEdgeMesh& mesh, FaceId face) {
+  const auto has_four_faces = [&](HalfEdgeId first) {
+    HalfEdgeId h = first;
+    for (int count = 1; count <= 4; ++count) {
+      h = mesh.rotate_ccw(h);
+      if (!h.valid()) return false;
+      if (h == first) return count == 4;
+    }
+    return false;
+  };
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const HalfEdgeId across = mesh.twin(HalfEdgeId(3 * face.value + k));
+    if (has_four_faces(HalfEdgeMesh::prev(across))) return true;
+  }
+  return false;
+}
+
+bool turns_faces(const TriangleStar& star, double least_cosine) {
+  return std::any_of(star.faces.begin(), star.faces.end(), [&](const TriangleStar::Face& face) {
+    return face.moves && turns(face.corner, face.second, face.third, {}, least_cosine);
   });
 }
 

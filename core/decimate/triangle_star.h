@@ -52,14 +52,20 @@ struct TriangleStar {
 };
 
 /// A metric that collapses triangles. Copyable; const members are called from several threads at
-/// the same time.
+/// the same time. Neither cost() nor is_planar() reads what gather_star() fills.
+///
+/// Its tests are applied in rounds: a round ends when no triangle passes any more.
 template <class M>
-concept TriangleMetric = requires(const M& metric, const TriangleStar& star) {
-  /// The cost, at least 0 and finite. Reads nothing that gather_star() fills.
+concept TriangleMetric = requires(const M& metric, const TriangleStar& star, std::uint32_t round) {
+  { M::kRounds } -> std::convertible_to<std::uint32_t>;
+  /// The first so many rounds have the planar test. (See DecimationReport for the others.)
+  { M::kPlanarRounds } -> std::convertible_to<std::uint32_t>;
+  /// The cost, at least 0 and finite.
   { metric.cost(star) } -> std::same_as<double>;
-  /// The metric's own test of a popped triangle; the engine refuses fold-overs and broken links
-  /// itself. If no triangle passes, the test is given up (see DecimationReport).
   { metric.is_planar(star) } -> std::same_as<bool>;
+  /// Of the angle by which a surviving face may turn in that round. 0 for the last: the engine
+  /// refuses fold-overs and broken links itself.
+  { metric.least_cosine(round) } -> std::same_as<double>;
 };
 
 /// Fills in corners, positions and apexes. False if a corner lies on a border.
@@ -72,7 +78,11 @@ bool gather_star(const WorkingMesh& work, TriangleStar& star);
 /// Whether both half-edge collapses keep the link condition (see legality.h), each in its turn.
 bool link_conditions_hold(const TriangleStar& star);
 
-/// Whether a surviving face turns over (see legality.h).
-bool folds_over(const TriangleStar& star);
+/// Whether the collapse of `face` leaves an apex with three faces. Next to such a vertex little can
+/// be collapsed: where every triangle of a coarse mesh has one in its middle, nothing can.
+bool leaves_valence_three(const HalfEdgeMesh& mesh, FaceId face);
+
+/// Whether a surviving face turns by more than the angle of `least_cosine`, or loses its area.
+bool turns_faces(const TriangleStar& star, double least_cosine);
 
 }  // namespace pmesh

@@ -56,6 +56,7 @@ class WorkingMesh {
 
   /// The same, and places the kept vertex at `position`.
   void collapse(VertexId removed, HalfEdgeId edge, Vec3d position) {
+    if (log_.kept_before.empty()) log_.kept_before.reserve(log_.collapses.capacity());
     collapse(removed, edge);
     Vec3d& kept = positions_[log_.collapses.back().kept.value];
     log_.kept_before.push_back(kept);

@@ -9,13 +9,19 @@
 #include "core/parallel/for_blocks.h"
 
 namespace pmesh {
+namespace {
+
+// Of one face: what is tried at first, and the bounded effort that ends every refinement.
+constexpr std::uint32_t kFewCuts = 8, kManyCuts = 20'000;
+
+}  // namespace
 
 // What one thread does in a row.
 struct DistanceBound::Part {
   FaceBounder bounder;
   double bound = 0;
-  std::uint32_t last_nearest = kNoIndex;  // the nearest face of the neighbour before
   std::vector<OpenFace> open;
+  std::uint32_t near_node = kNoIndex;  // the face nearest to the last node looked at
 
   void note(double distance) { bound = std::max(bound, distance); }
 };
@@ -24,7 +30,7 @@ void DistanceBound::sweep() {
   constexpr std::uint32_t kPartLevel = 4;  // a part is a node with up to 1024 faces
   const std::uint32_t level = std::min(kPartLevel, source_.tree().level_count() - 1);
   const std::uint32_t count = source_.tree().node_count(level);
-  std::vector<Part> parts(count, Part{FaceBounder(target_, tolerance_, reached_), 0, kNoIndex, {}});
+  std::vector<Part> parts(count, Part{FaceBounder(target_, tolerance_, reached_), 0, {}, kNoIndex});
   for_blocks<1>(count, threads_,
                 [&](std::uint32_t node, std::uint32_t) { sweep_node(level, node, parts[node]); });
   take(parts);
@@ -43,8 +49,8 @@ void DistanceBound::sweep_node(std::uint32_t level, std::uint32_t node, Part& pa
   const Vec3d low{box.low.x, box.low.y, box.low.z}, high{box.high.x, box.high.y, box.high.z};
   const double radius = length(high - low) / 2;
   if (level > 0 && radius < part.bounder.good_enough()) {
-    const NearestFace nearest = target_.nearest(0.5 * (low + high), part.last_nearest);
-    part.last_nearest = nearest.face;
+    const NearestFace nearest = target_.nearest(0.5 * (low + high), part.near_node);
+    part.near_node = nearest.face;
     const double farthest = std::sqrt(nearest.squared) + radius;
     if (farthest <= part.bounder.good_enough()) return part.note(farthest);
   }
@@ -68,39 +74,26 @@ void DistanceBound::sweep_face(std::uint32_t face, Part& part) const {
     const std::optional<double> known = memory_->recall(source_.given_face(face));
     if (known && *known <= bounder.good_enough()) return part.note(*known);
   }
-  const std::array<Vec3d, 3> corners = {t.a, t.b, t.c};
-  const std::uint32_t hint = hint_for(face, part);
-  if (hint != kNoIndex) {
-    const double distance = bounder.distance_to_face(corners, hint);
-    if (distance <= bounder.good_enough()) {
-      part.last_nearest = hint;
-      keep(face, distance, hint);
-      return part.note(distance);
-    }
+  if (!bound_face(face, hint_for(face, bounder), kFewCuts, part)) {
+    part.open.push_back({face, bounder.last_near()});
   }
-  const NearestFace nearest = target_.nearest((1.0 / 3) * (t.a + t.b + t.c), hint);
-  part.last_nearest = nearest.face;
-  bounder.reach(std::sqrt(nearest.squared));
-  const double distance = bounder.distance_to_face(corners, nearest.face);
-  if (distance > bounder.good_enough()) {
-    bounder.reach_corners(corners, nearest.face);
-    return part.open.push_back({face, nearest.face});
-  }
-  keep(face, distance, nearest.face);
-  part.note(distance);
 }
 
-std::uint32_t DistanceBound::hint_for(std::uint32_t face, const Part& part) const {
-  if (memory_ == nullptr) return part.last_nearest;
+bool DistanceBound::bound_face(std::uint32_t face, std::uint32_t hint, std::uint32_t most_cuts,
+                               Part& part) const {
+  const FaceBounder::Bound bound = part.bounder.bound(source_.corners(face), hint, most_cuts);
+  const bool is_good = bound.distance <= part.bounder.good_enough();
+  if (is_good || most_cuts == kManyCuts) part.note(bound.distance);
+  if (is_good && memory_ != nullptr) {
+    memory_->keep(source_.given_face(face), bound.distance, bound.witnesses);
+  }
+  return is_good;
+}
+
+std::uint32_t DistanceBound::hint_for(std::uint32_t face, const FaceBounder& bounder) const {
+  if (memory_ == nullptr) return bounder.last_near();
   const std::uint32_t hint = memory_->hint(source_.given_face(face));
-  return hint < target_.face_count() ? target_.face_given_as(hint) : part.last_nearest;
-}
-
-void DistanceBound::keep(std::uint32_t face, double distance, std::uint32_t witness) const {
-  if (memory_ == nullptr) return;
-  Witnesses witnesses;
-  witnesses.add(target_.given_face(witness));
-  memory_->keep(source_.given_face(face), distance, witnesses);
+  return hint < target_.face_count() ? target_.face_given_as(hint) : bounder.last_near();
 }
 
 void DistanceBound::refine() {
@@ -112,16 +105,12 @@ void DistanceBound::refine() {
     const auto count =
         static_cast<std::uint32_t>(std::min<std::size_t>(kRound, open.size() - done));
     std::vector<Part> parts((count + kPart - 1) / kPart,
-                            Part{FaceBounder(target_, tolerance_, reached_), 0, kNoIndex, {}});
+                            Part{FaceBounder(target_, tolerance_, reached_), 0, {}, kNoIndex});
     for_blocks<kPart>(count, threads_, [&](std::uint32_t begin, std::uint32_t end) {
       Part& part = parts[begin / kPart];
       for (std::uint32_t i = begin; i < end; ++i) {
         const auto [face, hint] = open[done + i];
-        const FaceBounder::Bound bound = part.bounder.bound(source_.corners(face), hint);
-        part.note(bound.distance);
-        if (memory_ != nullptr) {
-          memory_->keep(source_.given_face(face), bound.distance, bound.witnesses);
-        }
+        bound_face(face, hint, kManyCuts, part);
       }
     });
     take(parts);

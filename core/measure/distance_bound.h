@@ -10,6 +10,8 @@
 
 namespace pmesh {
 
+class FaceBounder;
+
 /// One direction: from `source` to `target`. sweep() first, then refine(); in between, what another
 /// direction has reached may be given, if only the larger of both is wanted.
 ///
@@ -45,8 +47,9 @@ class DistanceBound {
   struct Part;  // of a sweep or refinement
   void sweep_node(std::uint32_t level, std::uint32_t node, Part& part) const;
   void sweep_face(std::uint32_t face, Part& part) const;
-  std::uint32_t hint_for(std::uint32_t face, const Part& part) const;
-  void keep(std::uint32_t face, double distance, std::uint32_t witness) const;
+  bool bound_face(std::uint32_t face, std::uint32_t hint, std::uint32_t most_cuts,
+                  Part& part) const;
+  std::uint32_t hint_for(std::uint32_t face, const FaceBounder& bounder) const;
   void take(const std::vector<Part>& parts);
 
   const Surface& source_;

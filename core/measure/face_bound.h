@@ -34,36 +34,42 @@ class FaceBounder {
     if (distance > reached_) reached_ = distance;
   }
 
-  /// The largest distance of a corner to `face`.
-  double distance_to_face(std::span<const Vec3d> corners, std::uint32_t face) const;
-  /// Reaches the distances of those corners that `face` does not show to be near.
-  void reach_corners(std::span<const Vec3d> corners, std::uint32_t face);
+  /// A face of the target that was near to what was bounded last.
+  std::uint32_t last_near() const { return last_near_; }
 
-  /// Faces of the target, as its given numbers.
   struct Bound {
     double distance = 0;
-    Witnesses witnesses;
+    Witnesses witnesses;  ///< Faces of the target by their given numbers.
   };
-  /// A bound that is good enough, or as good as a bounded effort makes it. `hint` is a face that
-  /// may be near.
-  Bound bound(const Corners& face, std::uint32_t hint);
+  /// No point of `face` is farther than this. Found by at most `most_cuts` cuts; good enough if
+  /// those suffice. `hint` is a face of the target, better a near one.
+  Bound bound(const Corners& face, std::uint32_t hint, std::uint32_t most_cuts);
 
  private:
+  struct Estimate {
+    std::uint32_t near = kNoIndex;  // the face by which it was found, or one to cut by
+    double bound = 0;
+  };
   struct Piece {
     ConvexPolygon polygon;
-    std::uint32_t nearest = kNoIndex;  // the face nearest to its center
+    std::uint32_t near = kNoIndex;  // a face near its middle
     double bound = 0;
     friend bool operator<(const Piece& a, const Piece& b) { return a.bound < b.bound; }
   };
+  Estimate estimate(const ConvexPolygon& polygon, std::uint32_t hint);
+  double distance_to_face(std::span<const Vec3d> corners, std::uint32_t face) const;
+  void reach_corners(std::span<const Vec3d> corners, std::uint32_t face);
   void push(const ConvexPolygon& polygon, std::uint32_t hint);
-  Piece pop();
+  void accept(const Estimate& estimate);
   void split(const Piece& piece);
   bool split_by_prism(const Piece& piece);
 
   const Surface& target_;
   double tolerance_;
   double reached_;
-  std::vector<Piece> pieces_;  // a heap: the one with the largest bound is cut next
+  std::uint32_t last_near_ = 0;
+  std::vector<Piece> pieces_;  // not yet good enough: a heap, the worst is cut next
+  Bound bound_;                // of the pieces that are
 };
 
 }  // namespace pmesh

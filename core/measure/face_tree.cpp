@@ -41,10 +41,10 @@ FaceTree::FaceTree(const std::vector<Box<float>>& boxes) {
 Box<float> FaceTree::box(std::uint32_t level, std::uint32_t node) const {
   const Node& n = levels_[level][node];
   const auto least = [](const Lanes& lanes) {
-    return *std::min_element(lanes.begin(), lanes.end());
+    return std::min({lanes[0], lanes[1], lanes[2], lanes[3]});
   };
   const auto most = [](const Lanes& lanes) {
-    return *std::max_element(lanes.begin(), lanes.end());
+    return std::max({lanes[0], lanes[1], lanes[2], lanes[3]});
   };
   return {{least(n.low[0]), least(n.low[1]), least(n.low[2])},
           {most(n.high[0]), most(n.high[1]), most(n.high[2])}};

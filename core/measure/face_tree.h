@@ -4,6 +4,7 @@
 // Threads: const members may be called at the same time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -30,7 +31,16 @@ class FaceTree {
   /// The nearest of `start` and all faces, as `squared_distance(face)` says, to `p`. That function
   /// is called for few faces: those whose boxes are as near as the best so far.
   template <class SquaredDistance>
-  NearestFace nearest(Vec3d p, NearestFace start, const SquaredDistance& squared_distance) const;
+  NearestFace nearest(Vec3d p, NearestFace start, const SquaredDistance& squared_distance) const {
+    return nearest_below(level_count() - 1, 0, p, start, squared_distance);
+  }
+  /// The same among the faces around start.face in the order, 64 or so: what is near is there more
+  /// often than not.
+  template <class SquaredDistance>
+  NearestFace near(Vec3d p, NearestFace start, const SquaredDistance& squared_distance) const {
+    const std::uint32_t level = std::min(2u, level_count() - 1);
+    return nearest_below(level, start.face >> (2 * level + 2), p, start, squared_distance);
+  }
 
   /// Node n of level l holds the children 4 n .. 4 n + 3: nodes of level l - 1, or faces if l is 0.
   /// The last level has one node.
@@ -43,8 +53,10 @@ class FaceTree {
   Box<float> box(std::uint32_t level, std::uint32_t node) const;
 
  private:
-  using Lanes = std::array<float, kWidth>;
-  struct alignas(16) Node {
+  // Four numbers that are added, multiplied and compared at once (an extension of GCC and Clang).
+  typedef float Lanes __attribute__((vector_size(kWidth * sizeof(float))));
+  using Point = std::array<Lanes, 3>;  // each coordinate in all lanes
+  struct Node {
     std::array<Lanes, 3> low, high;
   };
   struct Visit {
@@ -52,23 +64,23 @@ class FaceTree {
     std::uint32_t level, node;
   };
 
-  static Lanes squared_distances(const Node& node, const std::array<float, 3>& p);
+  template <class SquaredDistance>
+  NearestFace nearest_below(std::uint32_t level, std::uint32_t node, Vec3d p, NearestFace start,
+                            const SquaredDistance& squared_distance) const;
+  static Lanes squared_distances(const Node& node, const Point& p);
   static float cull_radius(double squared);
 
   std::vector<std::vector<Node>> levels_;  // [0]: a box a face; the last: the root
 };
 
-inline FaceTree::Lanes FaceTree::squared_distances(const Node& node,
-                                                   const std::array<float, 3>& p) {
+inline FaceTree::Lanes FaceTree::squared_distances(const Node& node, const Point& p) {
+  const Lanes zero{};
   Lanes sum{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < kWidth; ++k) {
-      const float below = node.low[axis][k] - p[axis];
-      const float above = p[axis] - node.high[axis][k];
-      const float outside = below > above ? below : above;
-      const float off = outside > 0 ? outside : 0.0f;
-      sum[k] += off * off;
-    }
+    const Lanes below = node.low[axis] - p[axis], above = p[axis] - node.high[axis];
+    const Lanes outside = below > above ? below : above;
+    const Lanes off = outside > zero ? outside : zero;
+    sum += off * off;
   }
   return sum;
 }
@@ -82,16 +94,17 @@ inline float FaceTree::cull_radius(double squared) {
 }
 
 template <class SquaredDistance>
-NearestFace FaceTree::nearest(Vec3d p, NearestFace start,
-                              const SquaredDistance& squared_distance) const {
+NearestFace FaceTree::nearest_below(std::uint32_t level, std::uint32_t node, Vec3d p,
+                                    NearestFace start,
+                                    const SquaredDistance& squared_distance) const {
   constexpr std::size_t kMaxLevels = 16;
-  const std::array<float, 3> point = {static_cast<float>(p.x), static_cast<float>(p.y),
-                                      static_cast<float>(p.z)};
+  const Point point = {Lanes{} + static_cast<float>(p.x), Lanes{} + static_cast<float>(p.y),
+                       Lanes{} + static_cast<float>(p.z)};
   NearestFace best = start;
   float cull = cull_radius(best.squared);
   std::array<Visit, 3 * kMaxLevels + 1> stack;
   std::size_t depth = 0;
-  stack[depth++] = {0, static_cast<std::uint32_t>(levels_.size() - 1), 0};
+  stack[depth++] = {0, level, node};
   while (depth > 0) {
     const Visit visit = stack[--depth];
     if (visit.squared > cull) continue;

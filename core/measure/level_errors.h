@@ -21,7 +21,7 @@
 namespace pmesh {
 
 /// max_error is at most this much above the distance at some point, as a fraction of it.
-inline constexpr double kErrorTolerance = 0.05;
+inline constexpr double kErrorTolerance = 0.15;
 
 /// Two-sided, in the mesh's units.
 struct LevelError {
@@ -30,8 +30,8 @@ struct LevelError {
 };
 
 struct LevelErrorOptions {
-  std::uint32_t samples = 100'000;  ///< A direction and level, for rms_error.
-  unsigned threads = 1;             ///< The errors do not depend on it.
+  std::uint32_t samples = 32'768;  ///< A direction and level, for rms_error.
+  unsigned threads = 1;            ///< The errors do not depend on it.
 };
 
 /// Threads: one at a time; uses `threads` itself.

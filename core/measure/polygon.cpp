@@ -1,26 +1,40 @@
 #include "core/measure/polygon.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace pmesh {
 
-Vec3d ConvexPolygon::center() const {
-  Vec3d sum;
-  for (const Vec3d corner : corners()) sum += corner;
-  return (1.0 / static_cast<double>(count_)) * sum;
-}
-
-std::size_t ConvexPolygon::farthest_corner(Vec3d from) const {
-  std::size_t farthest = 0;
+Vec3d ConvexPolygon::farthest_from(Vec3d point) const {
+  Vec3d farthest = point;
   double most = -1;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Vec3d off = corners_[k] - from;
+  for (const Vec3d corner : corners()) {
+    const Vec3d off = corner - point;
     if (const double squared = dot(off, off); squared > most) {
       most = squared;
-      farthest = k;
+      farthest = corner;
     }
   }
   return farthest;
+}
+
+ConvexPolygon::Extent ConvexPolygon::extent() const {
+  const Vec3d end = farthest_from(corners_[0]);
+  return {farthest_from(end), end};
+}
+
+double ConvexPolygon::radius_about(Vec3d center) const {
+  return length(farthest_from(center) - center);
+}
+
+ConvexPolygon::Range ConvexPolygon::heights(const Plane& plane) const {
+  const double first = plane.height(corners_[0]);
+  Range range{first, first};
+  for (const Vec3d corner : corners()) {
+    const double height = plane.height(corner);
+    range = {std::min(range.low, height), std::max(range.high, height)};
+  }
+  return range;
 }
 
 ConvexPolygon::Parts ConvexPolygon::cut(const Plane& plane) const {

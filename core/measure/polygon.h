@@ -1,6 +1,7 @@
 // Small convex polygons in space, which are cut until each piece is near one face.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -19,18 +20,35 @@ struct Plane {
 /// Up to kMaxCorners corners of a planar convex polygon, in order.
 class ConvexPolygon {
  public:
-  static constexpr std::size_t kMaxCorners = 10;
+  static constexpr std::size_t kMaxCorners = 12;
 
   ConvexPolygon() = default;
+  ConvexPolygon(const ConvexPolygon& other) { *this = other; }
+  ConvexPolygon& operator=(const ConvexPolygon& other) {  // not the corners that are none
+    count_ = other.count_;
+    std::copy_n(other.corners_.begin(), count_, corners_.begin());
+    return *this;
+  }
   explicit ConvexPolygon(const Corners& t) : count_(3), corners_{t.a, t.b, t.c} {}
 
   std::span<const Vec3d> corners() const { return {corners_.data(), count_}; }
   bool empty() const { return count_ == 0; }
-  /// Whether cutting it by a plane leaves parts that are not too many-cornered.
-  bool can_be_cut() const { return count_ < kMaxCorners; }
+  /// Whether cutting it by a plane leaves no part with too many corners, even if rounding has left
+  /// it not quite convex and the plane crosses every edge.
+  bool can_be_cut() const { return count_ + count_ / 2 <= kMaxCorners; }
 
-  Vec3d center() const;  ///< The mean of its corners: a point of the polygon.
-  std::size_t farthest_corner(Vec3d from) const;
+  /// Its longest extent, about: two corners, and the point midway, which is one of the polygon.
+  struct Extent {
+    Vec3d from, to;
+    Vec3d middle() const { return 0.5 * (from + to); }
+  };
+  Extent extent() const;
+  double radius_about(Vec3d center) const;  ///< To the farthest corner.
+
+  struct Range {
+    double low, high;
+  };
+  Range heights(const Plane& plane) const;  ///< Of its corners.
 
   /// The parts below (height <= 0) and above a plane; either may be empty. Precondition:
   /// can_be_cut().
@@ -40,6 +58,7 @@ class ConvexPolygon {
   Parts cut_by_diagonal() const;
 
  private:
+  Vec3d farthest_from(Vec3d point) const;
   void add(Vec3d corner) { corners_[count_++] = corner; }
 
   std::size_t count_ = 0;

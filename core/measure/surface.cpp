@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/measure/face_neighbours.h"
 #include "core/measure/spatial_order.h"
 #include "core/parallel/for_blocks.h"
 
@@ -88,6 +89,7 @@ Surface::Surface(MeshView mesh, const UnitFrame& frame, unsigned threads)
       triangles_[face][k] = place[given];
     }
   }
+  neighbours_ = face_neighbours(triangles_, vertex_count());
   std::vector<Box<float>> boxes(face_count());
   for_blocks(face_count(), threads, [&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t face = begin; face < end; ++face) boxes[face] = outer_box(corners(face));
@@ -99,6 +101,11 @@ NearestFace Surface::nearest(Vec3d p, std::uint32_t hint) const {
   NearestFace start;
   if (hint != kNoIndex) start = {squared_distance(p, hint), hint};
   return tree_.nearest(p, start, [&](std::uint32_t face) { return squared_distance(p, face); });
+}
+
+NearestFace Surface::near(Vec3d p, std::uint32_t hint) const {
+  return tree_.near(p, {squared_distance(p, hint), hint},
+                    [&](std::uint32_t face) { return squared_distance(p, face); });
 }
 
 }  // namespace pmesh

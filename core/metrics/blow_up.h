@@ -18,8 +18,9 @@ inline constexpr double kSharpAngle = std::numbers::pi / 4;
 /// (theta_C).
 inline constexpr double kConeAngle = std::numbers::pi / 12;
 /// A crease has one more point for each beginning multiple of this angle (theta_t; the paper leaves
-/// it to the user).
-inline constexpr double kAngleStep = std::numbers::pi / 4;
+/// it to the user). No common angle of machine parts is a multiple, so that rounding decides
+/// nothing, and a right angle has three points, as many as the paper finds at most vertices.
+inline constexpr double kAngleStep = std::numbers::pi / 3;
 
 /// By vertex: 1 on smooth surface, ceil(theta / theta_t) + 1 on a crease that turns by theta, one
 /// more than its neighbours' sum at a corner (where three sharp edges meet, or a cone). Between two

@@ -14,8 +14,8 @@ namespace {
 constexpr double kFlipPenalty = 3;
 constexpr int kMaxSteps = 4;
 
-// The search ends when a step lowers the error by no more than this share.
-constexpr double kLeastGain = 1e-3;
+// The search ends when a step turns the normal by no more than this angle's squared sine.
+constexpr double kSettledSine2 = 1e-6;
 
 // Where the error is flat in some direction, the least place in that direction is undetermined: it
 // is drawn to where the search begins by a spring of this share of the quadric's trace.
@@ -32,8 +32,8 @@ Vec3d unit_or_zero(Vec3d v) {
   return norm > 0 ? 1 / norm * v : Vec3d{};
 }
 
-// The normal that the faces around the merged vertex give it, wherever it is placed: that of the sum
-// of their area vectors, which is affine in the place (and constant around an interior vertex).
+// The normal that the faces around the merged vertex give it, wherever it is placed: that of the
+// sum of their area vectors, which is affine in the place (and constant around an interior vertex).
 class StarNormal {
  public:
   StarNormal(const EdgeStar& star, Vec3d fallback) : fallback_(fallback) {
@@ -61,20 +61,27 @@ class StarNormal {
 class TargetSearch {
  public:
   TargetSearch(const Quadric6& error, const EdgeStar& star, double weight, Vec3d middle_normal)
-      : quadric_(error), star_(star), weight_(weight), normal_(star, middle_normal) {}
+      : quadric_(error),
+        star_(star),
+        weight_(weight),
+        middle_normal_(middle_normal),
+        normal_(star, middle_normal) {}
 
-  Placement run(Vec3d middle_normal) {
+  Placement run() {
     const bool on_border = star_.a_on_border || star_.b_on_border;
     take(begin());
-    Vec3d m = weight_ * middle_normal;
+    Vec3d m = weight_ * middle_normal_;
     for (int step = 0; step < kMaxSteps; ++step) {
-      const double before = error_;
       const Quadric fixed = quadric_.at_normal(m);
-      on_border ? search_border(fixed) : search_towards(fixed.least(kSpring));
-      if (step > 0 && !(error_ < (1 - kLeastGain) * before)) break;
+      if (on_border) {
+        search_border(fixed);
+      } else {
+        search_towards(fixed.least(kSpring));
+      }
+      const Vec3d turn = at_.m - m;
+      if (dot(turn, turn) <= kSettledSine2 * weight_ * weight_) break;
       m = at_.m;
     }
-    if (!on_border) take(star_.position_a), take(star_.position_b);
     return {std::max(0.0, error_), at_.p};
   }
 
@@ -120,6 +127,7 @@ class TargetSearch {
   const Quadric6& quadric_;
   const EdgeStar& star_;
   double weight_;
+  Vec3d middle_normal_;
   StarNormal normal_;
   Point6 at_;
   double error_ = kRefused;
@@ -193,7 +201,8 @@ class Start {
       const HalfEdgeId h(3 * face.value + k);
       if (!mesh_.is_border(h)) continue;
       const VertexId from = mesh_.origin(h), to = mesh_.target(h);
-      const Vec3d outward = unit_or_zero(cross(at(to) - at(from), unit_or_zero(doubled_area(face))));
+      const Vec3d outward =
+          unit_or_zero(cross(at(to) - at(from), unit_or_zero(doubled_area(face))));
       const Quadric plane = Quadric::plane(outward, -dot(outward, at(from)), kBorderWeight);
       quadrics[from.value].positions += plane;
       quadrics[to.value].positions += plane;
@@ -227,8 +236,7 @@ double FeatureSensitive::merged_weight(const EdgeStar& star) const {
 
 Placement FeatureSensitive::place(const EdgeStar& star) const {
   const Quadric6 error = (quadric(star.a) + quadric(star.b)).relative_to(star.origin);
-  const Vec3d middle = middle_normal(star);
-  Placement placement = TargetSearch(error, star, unit_weight_, middle).run(middle);
+  Placement placement = TargetSearch(error, star, unit_weight_, middle_normal(star)).run();
   placement.cost *= merged_weight(star);
   if (folds_over(star, placement.position)) placement.cost *= kFlipPenalty;
   return placement;

@@ -21,9 +21,9 @@ inline double dot(Point6 a, Point6 b) { return dot(a.p, b.p) + dot(a.m, b.m); }
 
 /// q(p, m) = p A p + 2 p C m + m N m + 2 (b p + d m) + c
 struct Quadric6 {
-  Quadric positions;              ///< A, b and c
+  Quadric positions;                ///< A, b and c
   Vec3d mixed_x, mixed_y, mixed_z;  ///< The rows of C.
-  Quadric normals;                ///< N and d; its c stays 0.
+  Quadric normals;                  ///< N and d; its c stays 0.
 
   /// The squared distance to the plane through `point` that the orthonormal u and v span (equations
   /// 5 to 7 of the feature-sensitive paper).
@@ -42,7 +42,7 @@ struct Quadric6 {
   /// The same function of p alone.
   Quadric at_normal(Vec3d m) const {
     Quadric q = positions;
-    q.b += Vec3d{dot(mixed_x, m), dot(mixed_y, m), dot(mixed_z, m)};
+    q.b += times_mixed(m);
     q.c += normals(m);
     return q;
   }

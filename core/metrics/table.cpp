@@ -15,26 +15,35 @@ using std::string_view;
 
 Error usage(string message) { return {ErrorCode::usage, std::move(message)}; }
 
-constexpr std::array<MetricParameter, 3> kParameters = {{
+constexpr std::array<MetricParameter, 5> kParameters = {{
     {"lambda", ParameterKind::number, "", "melod: weight of borders, 0 or more (default 10)"},
     {"placement", ParameterKind::choice, "subset|solved",
      "qem: whether a merged vertex stays at one end of its edge (subset, the default) or goes "
      "where "
      "the cost is least (solved)"},
+    {"weight", ParameterKind::number, "",
+     "feature-sensitive: length of a unit normal beside the mesh's longest side, 0 or more "
+     "(default "
+     "0.03)"},
+    {"blow-up", ParameterKind::flag, "",
+     "feature-sensitive: makes creases and corners dearer to simplify"},
     {"planarity", ParameterKind::number, "",
-     "triangle: least angle between a triangle and those around it, 0 to 180 degrees (default 165)"},
+     "triangle: least angle between a triangle and those around it, 0 to 180 degrees (default "
+     "165)"},
 }};
 
 constexpr std::array<string_view, 1> kMelodParameters = {"lambda"};
 constexpr std::array<string_view, 1> kQemParameters = {"placement"};
+constexpr std::array<string_view, 2> kFeatureParameters = {"weight", "blow-up"};
 constexpr std::array<string_view, 1> kTriangleParameters = {"planarity"};
 
-constexpr std::array<MetricRow, 5> kTable = {{
+constexpr std::array<MetricRow, 6> kTable = {{
     {"memoryless-qem", "quadrics of the faces at the moment, vertices a subset of the input's", {}},
     {"melod", "visual importance and face rotation (Hussain, Okada, Niijima 2004)",
      kMelodParameters},
     {"qem", "quadric error metric (Garland, Heckbert 1997)", kQemParameters},
     {"memoryless", "swept volume, volume preserved (Lindstrom, Turk 1998)", {}},
+    {"feature-sensitive", "quadrics of positions and normals (Wei, Lou 2010)", kFeatureParameters},
     {"triangle", "triangles to their centroid (Ali, Rahmat, Khalid, Ng 2011)", kTriangleParameters},
 }};
 
@@ -58,7 +67,13 @@ class ParameterText {
     return parsed;
   }
 
-  bool has(string_view name) const { return find(name).has_value(); }
+  Result<bool> flag(string_view name) const {
+    const std::optional<string_view> text = find(name);
+    if (text && !text->empty()) {
+      return usage("metric parameter '" + string(name) + "' takes no value");
+    }
+    return text.has_value();
+  }
 
   // The number of that name, `fallback` if it is not given.
   Result<double> number(string_view name, double fallback, double least, double most) const {
@@ -118,6 +133,14 @@ Result<AnyMetric> make_qem(const ParameterText& text) {
   return *subset ? AnyMetric(QemSubset()) : AnyMetric(QemSolved());
 }
 
+Result<AnyMetric> make_feature_sensitive(const ParameterText& text) {
+  const Result<double> weight = text.number("weight", FeatureSensitive::kDefaultWeight, 0, 1e3);
+  if (!weight) return weight.error();
+  const Result<bool> blow_up = text.flag("blow-up");
+  if (!blow_up) return blow_up.error();
+  return AnyMetric(FeatureSensitive(*weight, *blow_up));
+}
+
 Result<AnyMetric> make_triangle(const ParameterText& text) {
   const Result<double> planarity =
       text.number("planarity", TriangleCollapse::kDefaultPlanarity, 0, 180);
@@ -130,6 +153,10 @@ string parameters_of(const Melod& melod) {
 }
 string parameters_of(const QemSubset&) { return "placement=subset"; }
 string parameters_of(const QemSolved&) { return "placement=solved"; }
+string parameters_of(const FeatureSensitive& metric) {
+  return "weight=" + ParameterText::shortest(metric.weight()) +
+         (metric.blow_up() ? ",blow-up" : "");
+}
 string parameters_of(const TriangleCollapse& triangle) {
   return "planarity=" + ParameterText::shortest(triangle.planarity());
 }
@@ -149,6 +176,7 @@ Result<AnyMetric> make_metric(string_view name, string_view parameters) {
     const Result<ParameterText> text = ParameterText::parse(parameters, row);
     if (!text) return text.error();
     if (name == "melod") return make_melod(*text);
+    if (name == "feature-sensitive") return make_feature_sensitive(*text);
     if (name == "triangle") return make_triangle(*text);
     if (name == "qem") return make_qem(*text);
     if (name == "memoryless") return AnyMetric(Memoryless());

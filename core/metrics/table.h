@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "core/base/result.h"
+#include "core/metrics/feature_sensitive.h"
 #include "core/metrics/melod.h"
 #include "core/metrics/memoryless.h"
 #include "core/metrics/memoryless_qem.h"
@@ -17,7 +18,8 @@
 namespace pmesh {
 
 /// The default first.
-using AnyMetric = std::variant<MemorylessQem, Melod, QemSubset, QemSolved, Memoryless, TriangleCollapse>;
+using AnyMetric = std::variant<MemorylessQem, Melod, QemSubset, QemSolved, Memoryless,
+                               FeatureSensitive, TriangleCollapse>;
 
 enum class ParameterKind : std::uint8_t { number, choice, flag };
 

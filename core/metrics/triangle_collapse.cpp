@@ -8,9 +8,18 @@
 #include "core/decimate/face_turn.h"
 
 namespace pmesh {
+namespace {
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+}  // namespace
 
 TriangleCollapse::TriangleCollapse(double planarity)
-    : planarity_(planarity), least_cosine_(-std::cos(planarity * std::numbers::pi / 180)) {}
+    : planarity_(planarity), planar_cosine_(-std::cos(radians(planarity))) {
+  for (std::uint32_t round = 0; round + 1 < kRounds; ++round) {
+    least_cosines_[round] = std::cos(radians(1 << round));
+  }
+}
 
 double TriangleCollapse::cost(const TriangleStar& star) const {
   constexpr double kLast = std::numeric_limits<double>::max();
@@ -29,12 +38,14 @@ bool TriangleCollapse::is_planar(const TriangleStar& star) const {
   const auto& [a, b, c] = star.positions;
   const Vec3d normal = cross(b - a, c - a);
   if (!has_area(normal, b - a, c - a)) return false;
-  const double least = least_cosine_ * length(normal);
-  return std::all_of(star.faces.begin(), star.faces.end(), [&](const TriangleStar::Face& face) {
-    const Vec3d side = face.second - face.corner, other_side = face.third - face.corner;
-    const Vec3d around = cross(side, other_side);
-    return !has_area(around, side, other_side) || dot(normal, around) > least * length(around);
-  });
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d from = star.positions[(k + 2) % 3];
+    const Vec3d side = star.positions[(k + 1) % 3] - from, other_side = star.apexes[k] - from;
+    const Vec3d across = cross(side, other_side);
+    if (!has_area(across, side, other_side)) continue;
+    if (!(dot(normal, across) > planar_cosine_ * length(normal) * length(across))) return false;
+  }
+  return true;
 }
 
 }  // namespace pmesh

@@ -3,21 +3,26 @@
 // docs/decisions/0010-triangle-collapse-as-published.md for what the paper leaves open.
 #pragma once
 
+#include <array>
 #include <string_view>
 
 #include "core/decimate/triangle_star.h"
 
 namespace pmesh {
 
-/// Collapses the triangle whose big triangle (see triangle_star.h) is flattest for its area, as
-/// long as it is nearly coplanar with all faces around it.
+/// Collapses the triangle whose big triangle (see triangle_star.h) is flattest for its area, among
+/// those that are nearly coplanar with their neighbours.
 class TriangleCollapse {
  public:
   static constexpr std::string_view kName = "triangle";
   static constexpr double kDefaultPlanarity = 165;
 
-  /// The least angle between the triangle and a face around it, in degrees: 180 if they are
-  /// coplanar; with 0 the test always passes.
+  /// In round r no face turns by more than 2^r degrees, in the last by more than 90; up to 16
+  /// degrees the planar test holds.
+  static constexpr std::uint32_t kRounds = 8;
+  static constexpr std::uint32_t kPlanarRounds = 5;
+
+  /// The least angle between a triangle and its neighbours, in degrees; 180: they are coplanar.
   explicit TriangleCollapse(double planarity = kDefaultPlanarity);
 
   double planarity() const { return planarity_; }
@@ -27,13 +32,17 @@ class TriangleCollapse {
   /// last.
   double cost(const TriangleStar& star) const;
 
-  /// The planar test (section 3.5), over all faces that share a corner with the triangle. A
-  /// triangle without area fails; a face around it without area does not count.
+  /// The planar test (section 3.5). A triangle without area fails, a neighbour without area does
+  /// not count.
   bool is_planar(const TriangleStar& star) const;
+
+  /// The self-intersection test (section 3.7).
+  double least_cosine(std::uint32_t round) const { return least_cosines_[round]; }
 
  private:
   double planarity_;
-  double least_cosine_;  // of the angle between two normals
+  double planar_cosine_;  // of the angle between two normals
+  std::array<double, kRounds> least_cosines_{};
 };
 
 static_assert(TriangleMetric<TriangleCollapse>);

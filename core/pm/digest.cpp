@@ -33,6 +33,11 @@ ContentHash hash_prologue(ByteView prologue) {
   return first_bytes<ContentHash>(sha256(copy));
 }
 
+Bytes write_hashed_prologue(FileIndex& index) {
+  index.header.content_hash = hash_prologue(write_prologue(index));
+  return write_prologue(index);
+}
+
 SectionDigest digest_section(ByteView section) {
   return first_bytes<SectionDigest>(sha256(section));
 }

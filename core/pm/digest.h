@@ -11,6 +11,9 @@ namespace pmesh {
 /// hash field taken as zero. Precondition: prologue holds the hash field.
 ContentHash hash_prologue(ByteView prologue);
 
+/// write_prologue() with the content hash brought up to date, in `index`, too.
+Bytes write_hashed_prologue(FileIndex& index);
+
 /// The digest of a base mesh's or a chunk's bytes.
 SectionDigest digest_section(ByteView section);
 

@@ -157,9 +157,7 @@ Result<Bytes> encode(const EncodeInput& input) {
   index.header = describe(input, *base);
   const Bytes body = write_body(input, *base, file_ids, index);
 
-  const Bytes unhashed = write_prologue(index);
-  index.header.content_hash = hash_prologue(unhashed);
-  Bytes file = write_prologue(index);
+  Bytes file = write_hashed_prologue(index);
   // The default limits of a reader are the writer's, too.
   if (const auto readable = parse_prologue(file); !readable) return readable.error();
   file.insert(file.end(), body.begin(), body.end());

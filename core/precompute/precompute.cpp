@@ -9,6 +9,7 @@
 #include "core/metrics/table.h"
 #include "core/pm/encoder.h"
 #include "core/pm/format.h"
+#include "core/precompute/error_index.h"
 #include "core/precompute/quantise.h"
 #include "core/precompute/sort_spatially.h"
 
@@ -62,6 +63,7 @@ Result<Decimation> decimate_mesh(const IndexedMesh& mesh, const AnyMetric& metri
   Decimation result = decimate(std::move(*connectivity), mesh.positions, decimation);
   report.base_faces = result.report.faces;
   report.base_vertices = result.report.vertices;
+  report.planarity_relaxed_at = result.report.planarity_relaxed_at_faces;
   report.fold_over_relaxed_at = result.report.fold_over_relaxed_at_faces;
   return result;
 }
@@ -106,9 +108,15 @@ Result<PrecomputeReport> run(const PrecomputeOptions& options, const PrecomputeP
 
   progress(PrecomputePhase::encode, 0);
   const std::vector<Vec3i> points = quantise(decimation->positions, *lattice);
-  const Result<Bytes> file = encode({decimation->mesh, points, decimation->log, *lattice,
-                                     options.metric, report.metric_parameters, ""});
+  Result<Bytes> file = encode({decimation->mesh, points, decimation->log, *lattice, options.metric,
+                               report.metric_parameters, ""});
   if (!file) return prefixed(options.output, file.error());
+  if (options.measure) {
+    const Status measured = write_error_index(*file, *mesh, options.threads, [&](double fraction) {
+      progress(PrecomputePhase::measure, fraction);
+    });
+    if (!measured) return prefixed(options.input, measured.error());
+  }
   report_file(*file, report);
 
   progress(PrecomputePhase::write, 0);

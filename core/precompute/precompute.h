@@ -22,11 +22,13 @@ struct PrecomputeOptions {
   /// kMinLatticeBits to kMaxLatticeBits; else chosen by the mesh.
   std::optional<int> lattice_bits;
   std::uint32_t base_faces = 200;  ///< Decimation stops here, or where topology ends it.
-  unsigned threads = 1;            ///< The output does not depend on it.
+  /// Whether the index gets the measured error of each chunk end.
+  bool measure = true;
+  unsigned threads = 1;  ///< The output does not depend on it.
   Overwrite overwrite = Overwrite::no;
 };
 
-enum class PrecomputePhase : std::uint8_t { import, clean, decimate, encode, write, done };
+enum class PrecomputePhase : std::uint8_t { import, clean, decimate, encode, measure, write, done };
 
 struct PrecomputeReport {
   std::string metric_parameters;  ///< All of them, also those left at their defaults.
@@ -39,6 +41,8 @@ struct PrecomputeReport {
   std::uint64_t base_faces = 0;
   std::uint64_t base_vertices = 0;
   std::uint64_t base_bytes = 0;
+  /// Faces left when the metric's planar test was given up to go on; nothing if it never was.
+  std::optional<std::uint64_t> planarity_relaxed_at;
   /// Faces left when the fold-over check was relaxed to go on; nothing if it never was.
   std::optional<std::uint64_t> fold_over_relaxed_at;
   Lattice lattice;
@@ -47,7 +51,7 @@ struct PrecomputeReport {
   std::string hash;
 };
 
-/// Called at the start of each phase (and at `done`) and, during decimation, now and then with how
+/// Called at the start of each phase (and at `done`) and, in the long ones, now and then with how
 /// far it is, 0 to 1. Called on the caller's thread.
 using PrecomputeProgress = std::function<void(PrecomputePhase phase, double fraction)>;
 

@@ -28,7 +28,7 @@ precompute() {
   "$pmesh" precompute "$mesh" -o "$file" --json --quiet >"$work/precompute.json"
   check '.faces > 0 and .base_faces > 0 and .base_faces <= .faces' "$work/precompute.json"
   check '.seconds | has("import") and has("clean") and has("decimate") and has("encode")
-    and has("write") and has("total")' "$work/precompute.json"
+    and has("measure") and has("write") and has("total")' "$work/precompute.json"
   check '.cleaned | has("degenerate") and has("duplicate") and has("welded") and
     has("opposite_pairs") and has("nonmanifold_edges_cut") and has("winding_edges_cut") and
     has("nonmanifold_vertices_cut")' "$work/precompute.json"
@@ -40,6 +40,8 @@ inspect() {
   "$pmesh" info "$file" --json >"$work/info.json"
   check ".file_bytes == $(stat -c %s "$file")" "$work/info.json"
   check '(.hash | test("^[0-9a-f]{32}$")) and .metric == "memoryless-qem"' "$work/info.json"
+  check '.errors_measured and ([.chunks[] | .max_error >= .rms_error and .rms_error >= 0] | all)' \
+    "$work/info.json"
   check '[.chunks as $c | range(1; $c | length) | $c[.].offset == $c[. - 1].offset +
     $c[. - 1].bytes] | all' "$work/info.json"
   check '(.chunks | length) == 0 or (.chunks[-1] | .offset + .bytes) == .file_bytes' "$work/info.json"
@@ -89,7 +91,7 @@ resolve_mesh
 mkdir "$work/assets"
 file=$work/assets/mesh.pmesh
 wishes=("--ratio 1" "--ratio 0.5" "--ratio 0.05" "--faces 1000" "--faces 1" "--vertices 500"
-  "--bytes 20000")
+  "--bytes 20000" "--error 1%" "--error 0")
 
 precompute
 inspect

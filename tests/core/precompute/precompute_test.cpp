@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "core/files/read_file.h"
+#include "core/measure/compare.h"
+#include "core/pm/pm_file.h"
 #include "core/pm/verify.h"
 #include "core/precompute/quantise.h"
 #include "tests/fixtures/real_meshes.h"
@@ -89,7 +91,54 @@ TEST_F(Precompute, GoesThroughItsPhasesInOrder) {
   ASSERT_TRUE(report.ok());
   EXPECT_EQ(phases,
             (std::vector{PrecomputePhase::import, PrecomputePhase::clean, PrecomputePhase::decimate,
-                         PrecomputePhase::encode, PrecomputePhase::write, PrecomputePhase::done}));
+                         PrecomputePhase::encode, PrecomputePhase::measure, PrecomputePhase::write,
+                         PrecomputePhase::done}));
+}
+
+TEST_F(Precompute, TheIndexHoldsErrorsThatNoMeterExceeds) {
+  const IndexedMesh mesh = shapes::bumped(shapes::icosphere(5), 0.02);
+  const PrecomputeOptions options = options_for(mesh);
+  ASSERT_TRUE(precompute(options, kSilent).ok());
+  const Result<PmFile> opened = PmFile::open(options.output);
+  ASSERT_TRUE(opened.ok());
+  const PmFile& file = *opened;
+  ASSERT_TRUE(file.index().header.errors_measured);
+  ASSERT_GT(file.index().chunks.size(), 2u);
+  for (std::size_t c = 0; c < file.index().chunks.size(); ++c) {
+    const LatticeMesh lod = file.decode(c + 1)->snapshot();
+    IndexedMesh exported{{}, lod.triangles};
+    for (const Vec3i p : lod.positions) {
+      exported.positions.push_back(file.index().header.lattice.position(p));
+    }
+    const Comparison seen = *compare_surfaces(mesh, exported, {.samples = 200'000, .seed = 3});
+    const ChunkRow& row = file.index().chunks[c];
+    EXPECT_GE(row.max_error, seen.max()) << c;
+    EXPECT_LE(row.max_error, 1.25 * seen.max()) << c;
+    EXPECT_NEAR(row.rms_error, seen.rms(), 0.05 * seen.rms()) << c;
+  }
+}
+
+TEST_F(Precompute, LeavesErrorsUnmeasuredIfAskedTo) {
+  PrecomputeOptions options = options_for(shapes::icosphere(3));
+  options.measure = false;
+  ASSERT_TRUE(precompute(options, kSilent).ok());
+  EXPECT_FALSE(PmFile::open(options.output)->index().header.errors_measured);
+  EXPECT_TRUE(verify_file(options.output).ok());
+}
+
+TEST_F(Precompute, EveryMetricGivesAFileWithTheInputsTriangles) {
+  const IndexedMesh mesh = shapes::bumped(shapes::grid(24, 24), 0.03);
+  for (const MetricRow& row : metric_table()) {
+    PrecomputeOptions options = options_for(mesh);
+    options.metric = row.name;
+    ASSERT_TRUE(precompute(options, kSilent).ok()) << row.name;
+    const auto verified = verify_file(options.output);
+    ASSERT_TRUE(verified.ok()) << row.name << ": " << verified.error().message;
+    EXPECT_EQ(verified->index.header.metric, row.name);
+    const Lattice& lattice = verified->index.header.lattice;
+    EXPECT_TRUE(same_triangles(verified->full, {quantise(mesh.positions, lattice), mesh.triangles}))
+        << row.name;
+  }
 }
 
 TEST_F(Precompute, KeepsAnExistingFileUnlessToldOtherwise) {

@@ -1,0 +1,20 @@
+// The error index: what each chunk end of a PM file is off the surface that was imported.
+#pragma once
+
+#include <functional>
+
+#include "core/base/bytes.h"
+#include "core/base/result.h"
+#include "core/mesh/indexed_mesh.h"
+
+namespace pmesh {
+
+/// Decodes the whole PM file `file`, measures every chunk end against `original`, the cleaned mesh
+/// before quantisation (core/measure/level_errors.h), writes the errors into the index and brings
+/// the content hash up to date. Positions are measured as exports give them. `progress` is called
+/// with a fraction of 0 to 1. Fails, leaving the file without errors, if the mesh cannot be
+/// measured. The result does not depend on `threads`.
+Status write_error_index(Bytes& file, const IndexedMesh& original, unsigned threads,
+                         const std::function<void(double)>& progress);
+
+}  // namespace pmesh
