@@ -15,30 +15,33 @@ using std::string_view;
 
 Error usage(string message) { return {ErrorCode::usage, std::move(message)}; }
 
-constexpr std::array<MetricParameter, 5> kParameters = {{
+constexpr std::array<MetricParameter, 6> kParameters = {{
+    {"memory", ParameterKind::number, "",
+     "blended-qem: weight of the input's planes beside those of the moment, 0 or more (default "
+     "0.3)"},
     {"lambda", ParameterKind::number, "", "melod: weight of borders, 0 or more (default 10)"},
     {"placement", ParameterKind::choice, "subset|solved",
-     "qem: whether a merged vertex stays at one end of its edge (subset, the default) or goes "
-     "where "
-     "the cost is least (solved)"},
+     "qem: a merged vertex stays at an end of its edge (subset, the default), or goes where the "
+     "cost "
+     "is least (solved)"},
     {"weight", ParameterKind::number, "",
-     "feature-sensitive: length of a unit normal beside the mesh's longest side, 0 or more "
-     "(default "
-     "0.03)"},
+     "feature-sensitive: what a unit normal is long beside the mesh's longest side, 0 or more "
+     "(default 0.03)"},
     {"blow-up", ParameterKind::flag, "",
      "feature-sensitive: makes creases and corners dearer to simplify"},
     {"planarity", ParameterKind::number, "",
-     "triangle: least angle between a triangle and those around it, 0 to 180 degrees (default "
-     "165)"},
+     "triangle: least angle between a triangle and those around it, in degrees (default 165)"},
 }};
 
+constexpr std::array<string_view, 1> kBlendedParameters = {"memory"};
 constexpr std::array<string_view, 1> kMelodParameters = {"lambda"};
 constexpr std::array<string_view, 1> kQemParameters = {"placement"};
 constexpr std::array<string_view, 2> kFeatureParameters = {"weight", "blow-up"};
 constexpr std::array<string_view, 1> kTriangleParameters = {"planarity"};
 
 constexpr std::array<MetricRow, 6> kTable = {{
-    {"memoryless-qem", "quadrics of the faces at the moment, vertices a subset of the input's", {}},
+    {"blended-qem", "quadrics of the moment's faces and, less, of the input's; vertices stay put",
+     kBlendedParameters},
     {"melod", "visual importance and face rotation (Hussain, Okada, Niijima 2004)",
      kMelodParameters},
     {"qem", "quadric error metric (Garland, Heckbert 1997)", kQemParameters},
@@ -121,6 +124,12 @@ class ParameterText {
   std::vector<Item> items_;
 };
 
+Result<AnyMetric> make_blended_qem(const ParameterText& text) {
+  const Result<double> memory = text.number("memory", BlendedQem::kDefaultMemory, 0, 1e6);
+  if (!memory) return memory.error();
+  return AnyMetric(BlendedQem(*memory));
+}
+
 Result<AnyMetric> make_melod(const ParameterText& text) {
   const Result<double> lambda = text.number("lambda", Melod::kDefaultLambda, 0, 1e6);
   if (!lambda) return lambda.error();
@@ -148,6 +157,12 @@ Result<AnyMetric> make_triangle(const ParameterText& text) {
   return AnyMetric(TriangleCollapse(*planarity));
 }
 
+Result<AnyMetric> make_memoryless(const ParameterText& /*text*/) { return AnyMetric(Memoryless()); }
+
+// In the order of kTable.
+constexpr std::array<Result<AnyMetric> (*)(const ParameterText&), kTable.size()> kMakers = {
+    make_blended_qem, make_melod, make_qem, make_memoryless, make_feature_sensitive, make_triangle};
+
 string parameters_of(const Melod& melod) {
   return "lambda=" + ParameterText::shortest(melod.lambda());
 }
@@ -161,7 +176,9 @@ string parameters_of(const TriangleCollapse& triangle) {
   return "planarity=" + ParameterText::shortest(triangle.planarity());
 }
 string parameters_of(const Memoryless&) { return ""; }
-string parameters_of(const MemorylessQem&) { return ""; }
+string parameters_of(const BlendedQem& blended) {
+  return "memory=" + ParameterText::shortest(blended.memory());
+}
 
 }  // namespace
 
@@ -175,12 +192,7 @@ Result<AnyMetric> make_metric(string_view name, string_view parameters) {
     if (row.name != name) continue;
     const Result<ParameterText> text = ParameterText::parse(parameters, row);
     if (!text) return text.error();
-    if (name == "melod") return make_melod(*text);
-    if (name == "feature-sensitive") return make_feature_sensitive(*text);
-    if (name == "triangle") return make_triangle(*text);
-    if (name == "qem") return make_qem(*text);
-    if (name == "memoryless") return AnyMetric(Memoryless());
-    return AnyMetric(MemorylessQem());
+    return kMakers[static_cast<std::size_t>(&row - kTable.data())](*text);
   }
   return usage("unknown metric '" + string(name) + "' (known: " + known + ")");
 }

@@ -8,17 +8,17 @@
 #include <variant>
 
 #include "core/base/result.h"
+#include "core/metrics/blended_qem.h"
 #include "core/metrics/feature_sensitive.h"
 #include "core/metrics/melod.h"
 #include "core/metrics/memoryless.h"
-#include "core/metrics/memoryless_qem.h"
 #include "core/metrics/qem.h"
 #include "core/metrics/triangle_collapse.h"
 
 namespace pmesh {
 
 /// The default first.
-using AnyMetric = std::variant<MemorylessQem, Melod, QemSubset, QemSolved, Memoryless,
+using AnyMetric = std::variant<BlendedQem, Melod, QemSubset, QemSolved, Memoryless,
                                FeatureSensitive, TriangleCollapse>;
 
 enum class ParameterKind : std::uint8_t { number, choice, flag };

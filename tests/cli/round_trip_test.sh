@@ -39,7 +39,7 @@ precompute() {
 inspect() {
   "$pmesh" info "$file" --json >"$work/info.json"
   check ".file_bytes == $(stat -c %s "$file")" "$work/info.json"
-  check '(.hash | test("^[0-9a-f]{32}$")) and .metric == "memoryless-qem"' "$work/info.json"
+  check '(.hash | test("^[0-9a-f]{32}$")) and .metric == "blended-qem"' "$work/info.json"
   check '.errors_measured and ([.chunks[] | .max_error >= .rms_error and .rms_error >= 0] | all)' \
     "$work/info.json"
   check '[.chunks as $c | range(1; $c | length) | $c[.].offset == $c[. - 1].offset +

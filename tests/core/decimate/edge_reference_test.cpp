@@ -26,8 +26,9 @@ class Reference {
     std::optional<Choice> best;
     for (std::uint32_t h = 0; h < 3 * mesh_.face_slots(); ++h) {
       const std::optional<Choice> choice = consider(HalfEdgeId(h));
-      if (choice && (!best || choice->cost < best->cost ||
-                     (choice->cost == best->cost && tie_rank(choice->edge) < tie_rank(best->edge)))) {
+      if (choice &&
+          (!best || choice->cost < best->cost ||
+           (choice->cost == best->cost && tie_rank(choice->edge) < tie_rank(best->edge)))) {
         best = choice;
       }
     }

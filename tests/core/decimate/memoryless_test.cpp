@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/metrics/memoryless_qem.h"
 #include "tests/core/decimate/rings.h"
 #include "tests/fixtures/shapes.h"
 
@@ -42,7 +41,8 @@ TEST(EdgeStar, ListsTheSurvivingFacesAndTheBorders) {
 TEST(EdgeStar, OfAnInteriorEdgeHasAllFacesButTwo) {
   const IndexedMesh mesh = shapes::icosphere(0);
   const WorkingMesh work(half_edges(mesh), mesh.positions);
-  const EdgeStar star = star_of(work, 0, work.mesh().target(work.mesh().outgoing(VertexId(0))).value);
+  const EdgeStar star =
+      star_of(work, 0, work.mesh().target(work.mesh().outgoing(VertexId(0))).value);
   EXPECT_EQ(star.faces.size(), 5u + 5 - 4);
   EXPECT_EQ(star.apexes.size(), 2u);
   EXPECT_TRUE(star.borders.empty());
@@ -76,24 +76,6 @@ TEST(Memoryless, StraightBorderKeepsItsLine) {
   const Vec3d along = star.position_b - star.position_a;
   EXPECT_LT(length(cross(placement.position, along)), 1e-12);
   EXPECT_NEAR(placement.cost, 0, 1e-15);
-}
-
-TEST(MemorylessQem, CostIsAreaTimesSquaredDistanceToTheFacesLeft) {
-  // Vertex 0 moves one unit along x, off the face in the plane x = 0, whose area is 1/2.
-  const OneRing ring = ring_of(cube_corner(), 0);
-  const MemorylessQem metric;
-  EXPECT_NEAR(metric.cost(ring, metric.prepare(ring), index_in(ring, 1), {}), 0.5, 1e-15);
-}
-
-TEST(MemorylessQem, StraightBordersMayShrinkAndCornersMayNot) {
-  const IndexedMesh mesh = shapes::grid(4, 4);
-  const MemorylessQem metric;
-  const auto border_cost = [&](std::uint32_t v) {
-    const OneRing ring = ring_of(mesh, v);
-    return metric.cost(ring, metric.prepare(ring), 0, {});
-  };
-  EXPECT_NEAR(border_cost(1), 0, 1e-15);
-  EXPECT_GT(border_cost(0), 1e-6);
 }
 
 }  // namespace
