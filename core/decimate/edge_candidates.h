@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <optional>
 #include <span>
@@ -17,6 +18,50 @@
 
 namespace pmesh {
 
+// What a vertex's one-ring sums up to, for the vertices met since the last collapse. One thread's.
+template <class M>
+class SummaryCache {};
+
+template <SummaryMetric M>
+class SummaryCache<M> {
+ public:
+  using Summary = typename M::Summary;
+
+  // Null where a vertex has more than OneRing::kMaxFaces faces. Valid until the next call. `step`
+  // tells one state of the mesh from the others.
+  std::pair<const Summary*, const Summary*> find_both(const WorkingMesh& work, const M& metric,
+                                                      VertexId a, VertexId b, std::uint32_t step) {
+    const Summary* of_a = find(work, metric, a, step);
+    if (of_a != nullptr && &entry_of(a) == &entry_of(b)) of_a = &(displaced_ = *of_a);
+    return {of_a, find(work, metric, b, step)};
+  }
+
+ private:
+  struct Entry {
+    VertexId vertex;
+    std::uint32_t step = 0;
+    bool is_summed = false;
+    Summary summary;
+  };
+
+  Entry& entry_of(VertexId v) { return entries_[v.value % entries_.size()]; }
+
+  const Summary* find(const WorkingMesh& work, const M& metric, VertexId v, std::uint32_t step) {
+    Entry& entry = entry_of(v);
+    if (entry.vertex != v || entry.step != step) {
+      entry.vertex = v;
+      entry.step = step;
+      entry.is_summed = gather_ring(work, v, ring_);
+      if (entry.is_summed) entry.summary = metric.summarise(ring_);
+    }
+    return entry.is_summed ? &entry.summary : nullptr;
+  }
+
+  std::array<Entry, 128> entries_;
+  Summary displaced_;
+  PlacedRing ring_;
+};
+
 template <EdgeMetric M>
 class EdgeCandidates {
  public:
@@ -29,6 +74,7 @@ class EdgeCandidates {
     EdgeStar star;
     Placement placement;
     OneRing ring;  // neighbours only
+    SummaryCache<M> summaries;
   };
 
   EdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
@@ -45,9 +91,7 @@ class EdgeCandidates {
     scratch.mark.enter(DecimationPhase::gather);
     gather_ends(work_, edge, scratch.star);
     if (!may_merge(scratch.star)) return kRefused;
-    if (M::kNeedsStar && !gather_star(work_, scratch.star)) return kRefused;
-    scratch.mark.enter(DecimationPhase::cost);
-    scratch.placement = metric_.place(scratch.star);
+    scratch.placement = place(scratch);
     return scratch.placement.cost;
   }
 
@@ -68,7 +112,7 @@ class EdgeCandidates {
     if (!link_condition_holds(work_.mesh(), scratch.ring, scratch.ring.index_of(kept))) {
       return false;
     }
-    if (!M::kNeedsStar && !gather_star(work_, star)) return false;
+    if (!gather_star(work_, star)) return false;
     const Vec3d position = scratch.placement.position;
     if (!may_fold_over_ && folds_over(star, position)) return false;
 
@@ -91,6 +135,19 @@ class EdgeCandidates {
   }
 
  private:
+  Placement place(Scratch& scratch) const {
+    EdgeStar& star = scratch.star;
+    if constexpr (SummaryMetric<M>) {
+      const auto [a, b] = scratch.summaries.find_both(work_, metric_, star.a, star.b, step_);
+      scratch.mark.enter(DecimationPhase::cost);
+      return a == nullptr || b == nullptr ? Placement{} : metric_.place(star, *a, *b);
+    } else {
+      if (M::kNeedsStar && !gather_star(work_, star)) return {};
+      scratch.mark.enter(DecimationPhase::cost);
+      return metric_.place(star);
+    }
+  }
+
   HalfEdgeId edge_of(HalfEdgeId h) const {
     const HalfEdgeId twin = work_.mesh().twin(h);
     return twin.valid() ? std::min(h, twin) : h;

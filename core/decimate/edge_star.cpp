@@ -61,24 +61,40 @@ void gather_ends(const WorkingMesh& work, HalfEdgeId half_edge, EdgeStar& star) 
   star.origin = work.frame().to_unit(0.5 * (a + b));
   star.position_b = 0.5 * work.frame().scale * (b - a);
   star.position_a = -1.0 * star.position_b;
+  const Vec3d middle = 0.5 * (a + b);
+  const HalfEdgeId twin = mesh.twin(half_edge);
+  star.on_border = !twin.valid();
+  star.left = work.frame().scale * (work.position(mesh.apex(half_edge)) - middle);
+  if (twin.valid()) star.right = work.frame().scale * (work.position(mesh.apex(twin)) - middle);
   star.a_on_border = mesh.is_border(star.a);
   star.b_on_border = mesh.is_border(star.b);
 }
 
 bool gather_star(const WorkingMesh& work, EdgeStar& star) {
-  const HalfEdgeMesh& mesh = work.mesh();
   star.faces.clear();
-  star.apexes.clear();
   star.borders.clear();
   FanGatherer fans(work, star);
-  const HalfEdgeId twin = mesh.twin(star.half_edge);
-  star.apexes.push_back(fans.relative(mesh.apex(star.half_edge)));
-  if (twin.valid()) {
-    star.apexes.push_back(fans.relative(mesh.apex(twin)));
-  } else {
-    star.borders.push_back({star.position_a, star.position_b});
-  }
+  if (star.on_border) star.borders.push_back({star.position_a, star.position_b});
   return fans.gather(star.a, true) && fans.gather(star.b, false);
+}
+
+bool gather_ring(const WorkingMesh& work, VertexId v, PlacedRing& ring) {
+  const HalfEdgeMesh& mesh = work.mesh();
+  const MetricFrame& frame = work.frame();
+  const HalfEdgeId first = mesh.outgoing(v);
+  HalfEdgeId last, h = first;
+  ring.faces = 0;
+  do {
+    if (ring.faces == OneRing::kMaxFaces) return false;
+    ring.neighbours[ring.faces++] = frame.to_unit(work.position(mesh.target(h)));
+    last = h;
+    h = mesh.rotate_ccw(h);
+  } while (h.valid() && h != first);
+  ring.centre = frame.to_unit(work.position(v));
+  ring.border = !h.valid();
+  ring.count = ring.faces;
+  if (ring.border) ring.neighbours[ring.count++] = frame.to_unit(work.position(mesh.apex(last)));
+  return true;
 }
 
 bool folds_over(const EdgeStar& star, Vec3d position) {

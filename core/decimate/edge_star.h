@@ -34,13 +34,24 @@ struct EdgeStar {
   Vec3d origin;  ///< The edge's midpoint in the unit frame.
   Vec3d position_a, position_b;
   bool a_on_border = false, b_on_border = false;
+  bool on_border = false;  ///< The edge itself.
+  Vec3d left;              ///< The apex of the face to the left of a -> b.
+  Vec3d right;             ///< That of the other face, if not on_border.
 
   // What follows is filled by gather_star() only.
   std::vector<Face> faces;          ///< Those that survive, of a and of b.
-  std::vector<Vec3d> apexes;        ///< Of the edge's own faces: left, and right if there is one.
   std::vector<BorderEdge> borders;  ///< With an end in a or b; the edge itself, too.
+};
 
-  bool on_border() const { return apexes.size() == 1; }
+/// A vertex and its neighbours, in the unit frame.
+struct PlacedRing {
+  Vec3d centre;
+  std::array<Vec3d, OneRing::kMaxFaces + 1> neighbours;  ///< Ccw; on a border from end to end.
+  std::uint32_t count = 0;  ///< Of neighbours. Face i is (centre, neighbour i, neighbour i + 1).
+  std::uint32_t faces = 0;  ///< As many, or on a border one less.
+  bool border = false;
+
+  Vec3d after(std::uint32_t i) const { return neighbours[i + 1 < count ? i + 1 : 0]; }
 };
 
 /// What a metric says about an edge.
@@ -55,23 +66,42 @@ enum class EdgeReach : std::uint8_t {
   ring,    ///< Those of the merged vertex and of its neighbours.
 };
 
-/// A metric that collapses edges. Copyable; const members are called from several threads at the
-/// same time.
+/// What every metric that collapses edges has. Copyable; const members are called from several
+/// threads at the same time.
 template <class M>
-concept EdgeMetric = requires(M metric, const M& const_metric, const HalfEdgeMesh& mesh,
-                              std::span<const Vec3d> positions, const MetricFrame& frame,
-                              const EdgeStar& star, VertexId v) {
+concept EdgeMetricState = requires(M metric, const HalfEdgeMesh& mesh,
+                                   std::span<const Vec3d> positions, const MetricFrame& frame,
+                                   const EdgeStar& star, VertexId v) {
   { M::kReach } -> std::convertible_to<EdgeReach>;
-  /// Whether place() reads what gather_star() fills.
-  { M::kNeedsStar } -> std::convertible_to<bool>;
   /// Makes the per-vertex state of a mesh, before anything else is asked.
   { metric.start(mesh, positions, frame) } -> std::same_as<void>;
-  /// The cost of the edge and where it puts the merged vertex. The engine refuses fold-overs and
-  /// broken links itself.
-  { const_metric.place(star) } -> std::same_as<Placement>;
   /// Folds the per-vertex state of the removed into the kept vertex, before the mesh is changed.
   { metric.fold(star, v, v, Vec3d{}) } -> std::same_as<void>;
 };
+
+/// A metric that looks at an edge's ends and, if it says so, at its star.
+template <class M>
+concept StarMetric = EdgeMetricState<M> && requires(const M& metric, const EdgeStar& star) {
+  /// Whether place() reads what gather_star() fills.
+  { M::kNeedsStar } -> std::convertible_to<bool>;
+  /// The cost of the edge and where it puts the merged vertex. The engine refuses fold-overs and
+  /// broken links itself.
+  { metric.place(star) } -> std::same_as<Placement>;
+};
+
+/// A metric for which sums over the one-rings of both ends say enough of the star: the engine has
+/// them made once for all edges of a vertex.
+template <class M>
+concept SummaryMetric = EdgeMetricState<M> &&
+    requires(const M& metric, const EdgeStar& star, const PlacedRing& ring,
+             const typename M::Summary& summary) {
+  { metric.summarise(ring) } -> std::same_as<typename M::Summary>;
+  /// As above, with the summaries of a and b; reads nothing that gather_star() fills.
+  { metric.place(star, summary, summary) } -> std::same_as<Placement>;
+};
+
+template <class M>
+concept EdgeMetric = StarMetric<M> || SummaryMetric<M>;
 
 /// Fills in `star`, but for what gather_star() adds, for the edge of `half_edge`.
 void gather_ends(const WorkingMesh& work, HalfEdgeId half_edge, EdgeStar& star);
@@ -79,6 +109,9 @@ void gather_ends(const WorkingMesh& work, HalfEdgeId half_edge, EdgeStar& star);
 /// Fills in the rest. False if an end has more than EdgeStar::kMaxFaces faces; the walk stops
 /// there.
 bool gather_star(const WorkingMesh& work, EdgeStar& star);
+
+/// False if `v` has more than OneRing::kMaxFaces faces; the walk stops there.
+bool gather_ring(const WorkingMesh& work, VertexId v, PlacedRing& ring);
 
 /// Whether a surviving face of `star` turns by more than 90 degrees or loses its area, once its end
 /// is at `position`. Faces without area to begin with do not count.

@@ -4,19 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include "core/metrics/quadric.h"
-
 namespace pmesh {
 namespace {
 
 // The paper's lambda: how volumes and border areas share in the cost.
 constexpr double kVolumeShare = 0.5;
-
-// The squared volume of the tetrahedron between a face and p: the face's doubled area vector n is
-// six times as long per unit of height as the volume.
-void add_volume(Vec3d doubled_area, Vec3d on_face, Quadric& sum) {
-  sum += Quadric::plane(doubled_area, -dot(doubled_area, on_face), 1.0 / 36);
-}
 
 // The axis that makes the largest angle with n.
 Vec3d least_axis(Vec3d n) {
@@ -84,57 +76,86 @@ class Constraints {
   int count_ = 0;
 };
 
-// What the paper sums up over a star.
-struct Sums {
-  Quadric volumes;       // f_V
-  Vec3d normal;          // of doubled areas
-  double distance = 0;   // volume preservation: normal . p = distance
-  Quadric border_areas;  // f_B
-  Vec3d border_e1, border_e2;
-  Quadric shape;  // squared lengths of the edges to the merged vertex
-};
-
-void add_face(Vec3d a, Vec3d b, Vec3d c, Sums& sums) {
-  const Vec3d n = cross(b - a, c - a);
-  add_volume(n, a, sums.volumes);
-  sums.normal += n;
-  sums.distance += dot(n, a);
-}
-
-void add_neighbour(Vec3d p, Sums& sums) {
-  Quadric& q = sums.shape;
-  q.xx += 1, q.yy += 1, q.zz += 1;
-  q.b += -1.0 * p;
-  q.c += dot(p, p);
-}
-
-Sums sum_up(const EdgeStar& star) {
-  Sums sums;
-  for (const EdgeStar::Face& face : star.faces) {
-    add_face(face.end, face.second, face.third, sums);
-    add_neighbour(face.second, sums);
-    add_neighbour(face.third, sums);
-  }
-  add_face(star.position_a, star.position_b, star.apexes[0], sums);
-  if (!star.on_border()) add_face(star.position_b, star.position_a, star.apexes[1], sums);
-  for (const EdgeStar::BorderEdge& edge : star.borders) {
-    sums.border_areas += Quadric::squared_area(edge.from, edge.to);
-    sums.border_e1 += edge.to - edge.from;
-    sums.border_e2 += cross(edge.to, edge.from);
-  }
-  return sums;
+Quadric shape_of(const Memoryless::Summary& sums) {
+  Quadric shape;  // squared lengths of the edges to the merged vertex, but for a constant
+  shape.xx = shape.yy = shape.zz = sums.neighbour_count;
+  shape.b = -1.0 * sums.neighbours;
+  return shape;
 }
 
 }  // namespace
 
-Placement Memoryless::place(const EdgeStar& star) const {
-  const Sums sums = sum_up(star);
+// The volume is a sixth of the height over the doubled area, times that area.
+void Memoryless::Summary::add_face(Vec3d a, Vec3d b, Vec3d c, double sign) {
+  const Vec3d n = cross(b - a, c - a);
+  const double d = dot(n, a);
+  volumes += Quadric::plane(n, -d, sign / 36);
+  normal += sign * n;
+  distance += sign * d;
+}
+
+void Memoryless::Summary::add_border(Vec3d from, Vec3d to, double sign) {
+  border = true;
+  border_areas += Quadric::squared_area(from, to).scaled(sign);
+  border_e1 += sign * (to - from);
+  border_e2 += sign * cross(to, from);
+}
+
+void Memoryless::Summary::add(const Summary& other) {
+  volumes += other.volumes;
+  normal += other.normal;
+  distance += other.distance;
+  neighbours += other.neighbours;
+  neighbour_count += other.neighbour_count;
+  if (!other.border) return;
+  border = true;
+  border_areas += other.border_areas;
+  border_e1 += other.border_e1;
+  border_e2 += other.border_e2;
+}
+
+Memoryless::Summary Memoryless::Summary::relative_to(Vec3d origin) const {
+  Summary moved = *this;
+  moved.volumes = volumes.relative_to(origin);
+  moved.distance -= dot(normal, origin);
+  moved.neighbours += -neighbour_count * origin;
+  if (!border) return moved;
+  moved.border_areas = border_areas.relative_to(origin);
+  moved.border_e2 += cross(origin, border_e1);
+  return moved;
+}
+
+Memoryless::Summary Memoryless::summarise(const PlacedRing& ring) const {
+  Summary sums;
+  for (std::uint32_t i = 0; i < ring.faces; ++i) {
+    sums.add_face(ring.centre, ring.neighbours[i], ring.after(i), 1);
+  }
+  for (std::uint32_t i = 0; i < ring.count; ++i) sums.neighbours += ring.neighbours[i];
+  sums.neighbour_count = ring.count;
+  sums.border = ring.border;
+  if (ring.border) {
+    sums.add_border(ring.centre, ring.neighbours[0], 1);
+    sums.add_border(ring.neighbours[ring.count - 1], ring.centre, 1);
+  }
+  return sums;
+}
+
+Placement Memoryless::place(const EdgeStar& star, const Summary& a, const Summary& b) const {
+  Summary both = a;
+  both.add(b);
+  Summary sums = both.relative_to(star.origin);  // and the edge and its faces were added twice
+  sums.add_face(star.position_a, star.position_b, star.left, -1);
+  if (star.on_border) {
+    sums.add_border(star.position_a, star.position_b, -1);
+  } else {
+    sums.add_face(star.position_b, star.position_a, star.right, -1);
+  }
   const double length2 = 4 * dot(star.position_b, star.position_b);
   Quadric objective = sums.volumes.scaled(kVolumeShare);
-  objective += sums.border_areas.scaled((1 - kVolumeShare) * length2);
+  if (sums.border) objective += sums.border_areas.scaled((1 - kVolumeShare) * length2);
 
   Constraints constraints;
-  if (dot(sums.border_e1, sums.border_e1) > 0) {
+  if (sums.border) {
     // Border preservation (section 4.2): the sum of the area vectors, (p x e1 + e2) / 2, is least
     // on the line of direction e1 through `on_line`.
     const Vec3d e1 = sums.border_e1;
@@ -145,7 +166,7 @@ Placement Memoryless::place(const EdgeStar& star) const {
   }
   constraints.add(sums.normal, sums.distance);  // volume preservation (section 4.1)
   constraints.add_least(objective);
-  constraints.add_least(sums.shape);
+  constraints.add_least(shape_of(sums));
   const Vec3d position = constraints.count() == 3 ? constraints.solve() : Vec3d{};
   return {std::max(0.0, objective(position)), position};
 }

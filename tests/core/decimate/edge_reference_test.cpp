@@ -66,12 +66,26 @@ class Reference {
                               : star_.b_on_border;
     const auto [removed, kept] =
         remove_a ? std::pair(star_.a, star_.b) : std::pair(star_.b, star_.a);
-    const Placement placement = metric_.place(star_);
+    const Placement placement = place();
     if (!(placement.cost < kRefused) || folds_over(star_, placement.position) ||
         !may_collapse(mesh_, removed, h)) {
       return std::nullopt;
     }
     return Choice{h, removed, kept, placement.cost, placement.position};
+  }
+
+  Placement place() const {
+    if constexpr (SummaryMetric<M>) {
+      return metric_.place(star_, summary(star_.a), summary(star_.b));
+    } else {
+      return metric_.place(star_);
+    }
+  }
+
+  auto summary(VertexId v) const {
+    PlacedRing ring;
+    EXPECT_TRUE(gather_ring(work_, v, ring));
+    return metric_.summarise(ring);
   }
 
   std::uint32_t valence(VertexId v) const {
