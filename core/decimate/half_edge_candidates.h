@@ -18,6 +18,12 @@
 
 namespace pmesh {
 
+// A metric that can say cheaply what a candidate costs at least.
+template <class M>
+concept HasFloor = requires(const M& metric, const OneRing& ring, std::uint32_t head) {
+  { metric.floor(ring, metric.prepare(ring), head) } -> std::same_as<double>;
+};
+
 template <HalfEdgeMetric M>
 class HalfEdgeCandidates {
  public:
@@ -31,6 +37,7 @@ class HalfEdgeCandidates {
     typename M::Prepared prepared;
     MovedFaces moved;
     std::array<double, OneRing::kMaxFaces + 1> costs;
+    std::array<bool, OneRing::kMaxFaces + 1> is_floor;  // costs[i] is a lower bound as yet
   };
 
   HalfEdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
@@ -107,7 +114,7 @@ class HalfEdgeCandidates {
 
   // The costs of all candidates of the gathered vertex.
   void price(Scratch& scratch) const {
-    auto& [mark, ring, prepared, moved, costs] = scratch;
+    auto& [mark, ring, prepared, moved, costs, is_floor] = scratch;
     prepared = metric_.prepare(ring);
     for (std::uint32_t head = 0; head < ring.neighbours; ++head) {
       costs[head] = kRefused;
@@ -116,12 +123,29 @@ class HalfEdgeCandidates {
         move_faces(ring, head, moved);
         if (!may_fold_over_ && folds_over(ring, moved)) continue;
       }
-      costs[head] = metric_.cost(ring, prepared, head, moved);
+      if constexpr (HasFloor<M>) {
+        is_floor[head] = true;
+        costs[head] = metric_.floor(ring, prepared, head);
+      } else {
+        costs[head] = metric_.cost(ring, prepared, head, moved);
+      }
     }
   }
 
   // The neighbour of the least finite cost, or kNoIndex.
-  static std::uint32_t least(const Scratch& scratch) {
+  std::uint32_t least(Scratch& scratch) const {
+    std::uint32_t best = least_known(scratch);
+    if constexpr (HasFloor<M>) {
+      while (best != kNoIndex && scratch.is_floor[best]) {
+        scratch.is_floor[best] = false;
+        scratch.costs[best] = metric_.cost(scratch.ring, scratch.prepared, best, scratch.moved);
+        best = least_known(scratch);
+      }
+    }
+    return best;
+  }
+
+  static std::uint32_t least_known(const Scratch& scratch) {
     const auto& costs = scratch.costs;
     const OneRing& ring = scratch.ring;
     std::uint32_t best = kNoIndex;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/measure/surface.h"
 
 namespace pmesh {
 
@@ -35,7 +36,7 @@ class Witnesses {
   std::span<const std::uint32_t> faces() const { return {faces_.data(), count_}; }
 
  private:
-  static constexpr std::uint32_t kMost = 3;
+  static constexpr std::uint32_t kMost = 4;
   std::array<std::uint32_t, kMost> faces_{};
   std::uint8_t count_ = 0;
   bool complete_ = true;
@@ -65,10 +66,11 @@ class BoundMemory {
     return bound.witnesses.complete() ? std::optional<double>(bound.distance) : std::nullopt;
   }
 
-  /// A face of the other surface that was near, or kNoIndex.
-  std::uint32_t hint(std::uint32_t face) const {
+  /// A face of the other surface that was near, by its place in `target`; or kNoIndex.
+  std::uint32_t hint(std::uint32_t face, const Surface& target) const {
     const auto witnesses = bounds_[face].witnesses.faces();
-    return witnesses.empty() ? kNoIndex : witnesses.front();
+    if (witnesses.empty() || witnesses.front() >= target.face_count()) return kNoIndex;
+    return target.face_given_as(witnesses.front());
   }
 
   void keep(std::uint32_t face, double distance, const Witnesses& witnesses) {

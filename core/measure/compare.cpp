@@ -4,11 +4,15 @@
 #include <cmath>
 #include <vector>
 
+#include "core/measure/distance_bound.h"
 #include "core/measure/sampling.h"
 #include "core/measure/surface.h"
 
 namespace pmesh {
 namespace {
+
+// A maximum found is short of the true one by this fraction at most.
+constexpr double kMaxTolerance = 0.02;
 
 Box<double> joined(const Box<double>& a, const Box<double>& b) {
   const std::array<Vec3d, 4> ends = {a.low, a.high, b.low, b.high};
@@ -32,9 +36,14 @@ SurfaceDistance distance_from(const Surface& source, const Surface& target,
   const SurfaceDistance over_edges = sampled_distance(source, edges, target, options.threads);
   const SurfaceDistance over_vertices = vertex_distance(source, target, options.threads);
 
+  DistanceBound farthest(source, target, kMaxTolerance, options.threads, nullptr);
+  farthest.reach(std::max({over_faces.max, over_edges.max, over_vertices.max}));
+  farthest.sweep();
+  farthest.refine();
+
   // A surface without area is but its edges.
   SurfaceDistance distance = faces.count() > 0 ? over_faces : over_edges;
-  distance.max = std::max({over_faces.max, over_edges.max, over_vertices.max});
+  distance.max = farthest.reached();
   return distance;
 }
 

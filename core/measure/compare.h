@@ -4,7 +4,9 @@
 // The one-sided distance from A to B looks at points of A and takes each one's distance to the
 // nearest point of B, exactly:
 //  - mean and root mean square (rms) over points spread evenly over A's area;
-//  - max over those, over points spread along A's edges, and over A's vertices.
+//  - max over those, over points spread along A's edges, over A's vertices, and over points that a
+//    search goes on to where more may be found (core/measure/distance_bound.h), until none can be
+//    farther by more than 2%.
 // Faces with two corners in one place are measured to, not from (core/measure/surface.h).
 #pragma once
 

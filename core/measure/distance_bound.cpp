@@ -12,7 +12,7 @@ namespace pmesh {
 namespace {
 
 // Of one face: what is tried at first, and the bounded effort that ends every refinement.
-constexpr std::uint32_t kFewCuts = 8, kManyCuts = 20'000;
+constexpr std::uint32_t kFewCuts = 24, kManyCuts = 20'000;
 
 }  // namespace
 
@@ -92,8 +92,8 @@ bool DistanceBound::bound_face(std::uint32_t face, std::uint32_t hint, std::uint
 
 std::uint32_t DistanceBound::hint_for(std::uint32_t face, const FaceBounder& bounder) const {
   if (memory_ == nullptr) return bounder.last_near();
-  const std::uint32_t hint = memory_->hint(source_.given_face(face));
-  return hint < target_.face_count() ? target_.face_given_as(hint) : bounder.last_near();
+  const std::uint32_t hint = memory_->hint(source_.given_face(face), target_);
+  return hint == kNoIndex ? bounder.last_near() : hint;
 }
 
 void DistanceBound::refine() {

@@ -1,11 +1,11 @@
 // A bound that no point of a face exceeds in its distance to a surface.
 //
-// The distance to one face of the surface, a convex set, is a convex function: over a convex piece
-// it is largest at a corner of the piece. So for any face f, the largest distance from a corner of
-// the piece to f bounds the distance of the whole piece to the surface; and the distance at one
-// point plus the piece's radius does too, distances being 1-Lipschitz. A piece for which neither is
-// good enough is cut: along the sides of the prism over its nearest face, or, if it is large
-// against that face, in the middle.
+// The distance to one triangle, a convex set, is a convex function: over a convex piece of the face
+// it is largest at a corner of the piece. So the largest distance of a corner to one triangle
+// bounds that of the whole piece to the surface; and the distance of one point plus the piece's
+// radius does too, distances being 1-Lipschitz. A piece for which neither is good enough, even if a
+// triangle's neighbours help it, is cut: along the sides of the prism over a triangle that is near
+// or, if it is large against that, in the middle.
 #pragma once
 
 #include <array>
@@ -49,20 +49,23 @@ class FaceBounder {
   struct Estimate {
     std::uint32_t near = kNoIndex;  // the face by which it was found, or one to cut by
     double bound = 0;
+    std::array<std::uint32_t, 3> beyond = {kNoIndex, kNoIndex, kNoIndex};  // neighbours it needed
   };
+  bool is_good(const Estimate& estimate) const { return estimate.bound <= good_enough(); }
   struct Piece {
     ConvexPolygon polygon;
-    std::uint32_t near = kNoIndex;  // a face near its middle
+    std::uint32_t near = kNoIndex;  // a face near its center
     double bound = 0;
     friend bool operator<(const Piece& a, const Piece& b) { return a.bound < b.bound; }
   };
   Estimate estimate(const ConvexPolygon& polygon, std::uint32_t hint);
-  double distance_to_face(std::span<const Vec3d> corners, std::uint32_t face) const;
+  Estimate estimate_around(std::span<const Vec3d> corners, std::uint32_t face) const;
   void reach_corners(std::span<const Vec3d> corners, std::uint32_t face);
   void push(const ConvexPolygon& polygon, std::uint32_t hint);
   void accept(const Estimate& estimate);
   void split(const Piece& piece);
-  bool split_by_prism(const Piece& piece);
+  bool split_by_prism(const ConvexPolygon& polygon, std::uint32_t face, int steps_left);
+  std::uint32_t with_prism(std::uint32_t face) const;
 
   const Surface& target_;
   double tolerance_;

@@ -54,7 +54,7 @@ class FaceTree {
 
  private:
   // Four numbers that are added, multiplied and compared at once (an extension of GCC and Clang).
-  typedef float Lanes __attribute__((vector_size(kWidth * sizeof(float))));
+  using Lanes __attribute__((vector_size(kWidth * sizeof(float)))) = float;
   using Point = std::array<Lanes, 3>;  // each coordinate in all lanes
   struct Node {
     std::array<Lanes, 3> low, high;

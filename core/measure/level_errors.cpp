@@ -18,7 +18,9 @@ constexpr double kRounding = 4e-15;
 Result<LevelErrors> LevelErrors::of(MeshView original, const LevelErrorOptions& options) {
   const Result<UnitFrame> frame = unit_frame(box_of_faces(original));
   if (!frame) return frame.error();
-  return LevelErrors(original, *frame, options);
+  LevelErrorOptions chosen = options;
+  if (chosen.samples == 0) chosen.samples = original.triangles.size() < 200'000 ? 1 << 17 : 1 << 14;
+  return LevelErrors(original, *frame, chosen);
 }
 
 LevelErrors::LevelErrors(MeshView original, const UnitFrame& frame,
@@ -31,10 +33,13 @@ LevelErrors::LevelErrors(MeshView original, const UnitFrame& frame,
 LevelError LevelErrors::measure(MeshView lod) {
   note_changes(lod);
   const Surface surface(lod, frame_, options_.threads);
+  forward_.begin_level(level_, original_->face_count(), {}, changed_at_);
+  backward_.begin_level(level_, surface.face_count(), changed_at_, {});
   const SurfaceSampler lod_samples(surface, SurfaceSampler::Over::faces, options_.samples, kSeed);
-  const SurfaceDistance forward = sampled_distance(*original_, samples_, surface, options_.threads);
+  const SurfaceDistance forward =
+      sampled_distance(*original_, samples_, surface, options_.threads, &forward_);
   const SurfaceDistance backward =
-      sampled_distance(surface, lod_samples, *original_, options_.threads);
+      sampled_distance(surface, lod_samples, *original_, options_.threads, &backward_);
 
   const double bound = bound_of_maximum(surface, std::max(forward.max, backward.max));
   if (bound <= kNoDistance) return {};
@@ -64,8 +69,6 @@ void LevelErrors::note_changes(MeshView lod) {
 
 // Both directions: nothing in the LOD or the original is farther from the other.
 double LevelErrors::bound_of_maximum(const Surface& lod, double reached) {
-  forward_.begin_level(level_, original_->face_count(), {}, changed_at_);
-  backward_.begin_level(level_, lod.face_count(), changed_at_, {});
   DistanceBound forward(*original_, lod, kErrorTolerance, options_.threads, &forward_);
   DistanceBound backward(lod, *original_, kErrorTolerance, options_.threads, &backward_);
   forward.reach(reached);

@@ -32,6 +32,9 @@ class TriangleDistance {
     has_normal_ = squared_area_ > kThinnest * dot(ab_, ab_) * dot(ac_, ac_);
   }
 
+  /// Whether it is not too thin to have one.
+  bool has_normal() const { return has_normal_; }
+
   double squared(Vec3d p) const {
     if (has_normal_) {
       const Vec3d ap = p - a_;

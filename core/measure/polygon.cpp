@@ -23,6 +23,12 @@ ConvexPolygon::Extent ConvexPolygon::extent() const {
   return {farthest_from(end), end};
 }
 
+Vec3d ConvexPolygon::center() const {
+  Vec3d sum;
+  for (const Vec3d corner : corners()) sum += corner;
+  return (1.0 / static_cast<double>(count_)) * sum;
+}
+
 double ConvexPolygon::radius_about(Vec3d center) const {
   return length(farthest_from(center) - center);
 }

@@ -43,6 +43,7 @@ class ConvexPolygon {
     Vec3d middle() const { return 0.5 * (from + to); }
   };
   Extent extent() const;
+  Vec3d center() const;                     ///< The mean of its corners.
   double radius_about(Vec3d center) const;  ///< To the farthest corner.
 
   struct Range {

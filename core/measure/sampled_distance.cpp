@@ -26,18 +26,19 @@ struct Sums {
 };
 
 // Over `count` points, by blocks, so that the threads do not show in the sums' rounding.
-// visit(begin, end, look) calls look(point) for the points of a block, neighbours in a row.
+// visit(begin, end, look) calls look(point, hint) for the points of a block, neighbours in a row;
+// the hint is a face of the target, or kNoIndex for the one found last.
 template <class VisitPoints>
 SurfaceDistance distance_over(std::uint32_t count, const Surface& target, unsigned threads,
                               const VisitPoints& visit) {
   constexpr std::uint32_t kBlock = 1 << 12;
   std::vector<Sums> blocks((count + kBlock - 1) / kBlock);
   for_blocks<kBlock>(count, threads, [&](std::uint32_t begin, std::uint32_t end) {
-    std::uint32_t hint = kNoIndex;
+    std::uint32_t last = kNoIndex;
     Sums& sums = blocks[begin / kBlock];
-    visit(begin, end, [&](Vec3d point) {
-      const NearestFace nearest = target.nearest(point, hint);
-      hint = nearest.face;
+    visit(begin, end, [&](Vec3d point, std::uint32_t hint) {
+      const NearestFace nearest = target.nearest(point, hint == kNoIndex ? last : hint);
+      last = nearest.face;
       sums.add(nearest.squared);
     });
   });
@@ -51,11 +52,15 @@ SurfaceDistance distance_over(std::uint32_t count, const Surface& target, unsign
 }  // namespace
 
 SurfaceDistance sampled_distance(const Surface& source, const SurfaceSampler& sampler,
-                                 const Surface& target, unsigned threads) {
+                                 const Surface& target, unsigned threads,
+                                 const BoundMemory* memory) {
+  const auto hint_for = [&](std::uint32_t face) {
+    return memory == nullptr ? kNoIndex : memory->hint(source.given_face(face), target);
+  };
   return distance_over(sampler.count(), target, threads,
                        [&](std::uint32_t begin, std::uint32_t end, const auto& look) {
                          sampler.visit(begin, end, [&](const SamplePoint& sample) {
-                           look(sample.on(source.corners(sample.face)));
+                           look(sample.on(source.corners(sample.face)), hint_for(sample.face));
                          });
                        });
 }
@@ -65,7 +70,7 @@ SurfaceDistance vertex_distance(const Surface& source, const Surface& target, un
   return distance_over(static_cast<std::uint32_t>(vertices.size()), target, threads,
                        [&](std::uint32_t begin, std::uint32_t end, const auto& look) {
                          for (std::uint32_t i = begin; i < end; ++i) {
-                           look(source.position(vertices[i]));
+                           look(source.position(vertices[i]), kNoIndex);
                          }
                        });
 }

@@ -48,8 +48,12 @@ void QuadricField::start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positi
 
 double QemSubset::cost(const OneRing& ring, const Prepared& prepared, std::uint32_t head,
                        const MovedFaces& /*moved*/) const {
-  const Vec3d at = ring.position(head);
-  return std::max(0.0, prepared.centre(at) + quadrics_[ring.ids[head]](ring.origin + at));
+  const double of_head = quadrics_[ring.ids[head]](ring.origin + ring.position(head));
+  return floor(ring, prepared, head) + std::max(0.0, of_head);
+}
+
+double QemSubset::floor(const OneRing& ring, const Prepared& prepared, std::uint32_t head) const {
+  return std::max(0.0, prepared.centre(ring.position(head)));
 }
 
 Placement QemSolved::place(const EdgeStar& star) const {

@@ -45,6 +45,9 @@ class QemSubset {
   double cost(const OneRing& ring, const Prepared& prepared, std::uint32_t head,
               const MovedFaces& moved) const;
 
+  /// What it costs at least: the head's own quadric, which is elsewhere in memory, left out.
+  double floor(const OneRing& ring, const Prepared& prepared, std::uint32_t head) const;
+
   double priority(const Prepared& /*prepared*/, double cost, double /*popped*/) const {
     return cost;
   }

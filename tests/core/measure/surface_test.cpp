@@ -53,7 +53,8 @@ TEST(Surface, KeepsEveryFaceInWhateverOrder) {
   const IndexedMesh mesh = shapes::genus(3);
   const Surface surface = unit_surface(mesh);
   std::vector<Triangle> kept, given = mesh.triangles;
-  for (std::uint32_t f = 0; f < surface.face_count(); ++f) kept.push_back(mesh.triangles[surface.given_face(f)]);
+  for (std::uint32_t f = 0; f < surface.face_count(); ++f)
+    kept.push_back(mesh.triangles[surface.given_face(f)]);
   std::sort(kept.begin(), kept.end());
   std::sort(given.begin(), given.end());
   EXPECT_EQ(kept, given);
