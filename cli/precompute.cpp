@@ -113,6 +113,8 @@ Json to_json(const Options& options, const PrecomputeReport& report, const Phase
           {"base_bytes", report.base_bytes},
           {"planarity_relaxed_at", optional_json(report.planarity_relaxed_at)},
           {"fold_over_relaxed_at", optional_json(report.fold_over_relaxed_at)},
+          {"errors_measured", report.measured},
+          {"largest_valence", report.largest_valence},
           {"quantization", report.lattice.bits},
           {"step", report.lattice.step},
           {"chunks", report.chunks},
@@ -155,6 +157,9 @@ void print_text(const Options& options, const PrecomputeReport& report, const Ph
   if (report.fold_over_relaxed_at) {
     std::printf("  the fold-over check was relaxed below %llu faces\n",
                 number(*report.fold_over_relaxed_at));
+  }
+  if (options.precompute.measure && !report.measured) {
+    std::printf("errors not measured: a vertex has %u faces\n", report.largest_valence);
   }
   std::printf("%s: %llu bytes in %zu chunks, hash %s, %.2f s\n", options.precompute.output.c_str(),
               number(report.file_bytes), report.chunks, report.hash.c_str(), clock.total());

@@ -28,6 +28,14 @@ IndexedMesh exported(const RefinableMesh& mesh, const Lattice& lattice) {
 
 }  // namespace
 
+std::uint32_t largest_valence(const IndexedMesh& mesh) {
+  std::vector<std::uint32_t> faces(mesh.positions.size());
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) ++faces[v];
+  }
+  return faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end());
+}
+
 Status write_error_index(Bytes& file, const IndexedMesh& original, unsigned threads,
                          const std::function<void(double)>& progress) {
   Result<LevelErrors> errors =

@@ -111,7 +111,9 @@ Result<PrecomputeReport> run(const PrecomputeOptions& options, const PrecomputeP
   Result<Bytes> file = encode({decimation->mesh, points, decimation->log, *lattice, options.metric,
                                report.metric_parameters, ""});
   if (!file) return prefixed(options.output, file.error());
-  if (options.measure) {
+  report.largest_valence = largest_valence(*mesh);
+  report.measured = options.measure && report.largest_valence <= kMostFacesToMeasure;
+  if (report.measured) {
     const Status measured = write_error_index(*file, *mesh, options.threads, [&](double fraction) {
       progress(PrecomputePhase::measure, fraction);
     });

@@ -45,6 +45,10 @@ struct PrecomputeReport {
   std::optional<std::uint64_t> planarity_relaxed_at;
   /// Faces left when the fold-over check was relaxed to go on; nothing if it never was.
   std::optional<std::uint64_t> fold_over_relaxed_at;
+  /// Faces of the vertex that has most of them. With more than kMostFacesToMeasure
+  /// (core/precompute/error_index.h) the errors are not measured, whatever was asked.
+  std::uint32_t largest_valence = 0;
+  bool measured = false;  ///< The index has the error of each chunk end.
   Lattice lattice;
   std::size_t chunks = 0;
   std::uint64_t file_bytes = 0;

@@ -126,6 +126,15 @@ TEST_F(Precompute, LeavesErrorsUnmeasuredIfAskedTo) {
   EXPECT_TRUE(verify_file(options.output).ok());
 }
 
+TEST_F(Precompute, DoesNotMeasureAroundAHubAndSaysSo) {
+  const PrecomputeOptions options = options_for(shapes::hub(5000));
+  const auto report = precompute(options, kSilent);
+  ASSERT_TRUE(report.ok());
+  EXPECT_FALSE(report->measured);
+  EXPECT_EQ(report->largest_valence, 5000u);
+  EXPECT_FALSE(PmFile::open(options.output)->index().header.errors_measured);
+}
+
 TEST_F(Precompute, EveryMetricGivesAFileWithTheInputsTriangles) {
   const IndexedMesh mesh = shapes::bumped(shapes::grid(24, 24), 0.03);
   for (const MetricRow& row : metric_table()) {
