@@ -28,7 +28,7 @@ struct DecimateOptions {
   /// For the first evaluation of all vertices; the rest is sequential. The result does not depend
   /// on it. At least 1.
   unsigned threads = 1;
-  /// By vertex: nonzero if the vertex must not be removed. Empty: none is locked.
+  /// By vertex: nonzero if the vertex must be neither removed nor moved. Empty: none is locked.
   std::span<const std::uint8_t> locked;
   /// Called now and then, on the calling thread, with the collapses made and an estimate of all.
   std::function<void(std::uint64_t done, std::uint64_t total_guess)> progress;

@@ -258,7 +258,8 @@ Status check_rows(const FileIndex& index) {
         splits > std::uint64_t{8} * row.bytes || row.bytes > h.max_split_bytes() * splits) {
       return damaged(where + ": impossible counts");
     }
-    if (h.errors_measured && !(row.max_error >= 0 && row.rms_error >= 0)) {
+    const auto is_length = [](double d) { return std::isfinite(d) && d >= 0; };
+    if (h.errors_measured && !(is_length(row.max_error) && is_length(row.rms_error))) {
       return damaged(where + ": an error is not a number");
     }
     end = row.end();
