@@ -4,13 +4,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cassert>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "core/decimate/edge_patch.h"
+#include "core/decimate/edge_pricer.h"
 #include "core/decimate/edge_star.h"
 #include "core/decimate/legality.h"
 #include "core/decimate/one_ring.h"
@@ -18,67 +19,22 @@
 
 namespace pmesh {
 
-// What a vertex's one-ring sums up to, for the vertices met since the last collapse. One thread's.
-template <class M>
-class SummaryCache {};
-
-template <SummaryMetric M>
-class SummaryCache<M> {
- public:
-  using Summary = typename M::Summary;
-
-  // Null where a vertex has more than OneRing::kMaxFaces faces. Valid until the next call. `step`
-  // tells one state of the mesh from the others.
-  std::pair<const Summary*, const Summary*> find_both(const WorkingMesh& work, const M& metric,
-                                                      VertexId a, VertexId b, std::uint32_t step) {
-    const Summary* of_a = find(work, metric, a, step);
-    if (of_a != nullptr && &entry_of(a) == &entry_of(b)) of_a = &(displaced_ = *of_a);
-    return {of_a, find(work, metric, b, step)};
-  }
-
- private:
-  struct Entry {
-    VertexId vertex;
-    std::uint32_t step = 0;
-    bool is_summed = false;
-    Summary summary;
-  };
-
-  Entry& entry_of(VertexId v) { return entries_[v.value % entries_.size()]; }
-
-  const Summary* find(const WorkingMesh& work, const M& metric, VertexId v, std::uint32_t step) {
-    Entry& entry = entry_of(v);
-    if (entry.vertex != v || entry.step != step) {
-      entry.vertex = v;
-      entry.step = step;
-      entry.is_summed = gather_ring(work, v, ring_);
-      if (entry.is_summed) entry.summary = metric.summarise(ring_);
-    }
-    return entry.is_summed ? &entry.summary : nullptr;
-  }
-
-  std::array<Entry, 128> entries_;
-  Summary displaced_;
-  PlacedRing ring_;
-};
-
 template <EdgeMetric M>
 class EdgeCandidates {
  public:
   using ElementId = HalfEdgeId;
   static constexpr std::uint32_t kCollapsesPerStep = 1;
 
-  // What one thread needs to evaluate an edge.
   struct Scratch {
     PhaseMark mark;
     EdgeStar star;
     Placement placement;
     OneRing ring;  // neighbours only
-    SummaryCache<M> summaries;
+    EdgePricer<M> pricer;
   };
 
   EdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
-      : work_(work), metric_(metric), locked_(locked), ring_mark_(work.mesh().vertex_slots()) {
+      : work_(work), metric_(metric), locked_(locked), patch_(work, SummaryMetric<M>) {
     metric_.start(work.mesh(), work.positions(), work.frame());
   }
 
@@ -91,7 +47,7 @@ class EdgeCandidates {
     scratch.mark.enter(DecimationPhase::gather);
     gather_ends(work_, edge, scratch.star);
     if (!may_merge(scratch.star)) return kRefused;
-    scratch.placement = place(scratch);
+    scratch.placement = scratch.pricer.place(work_, metric_, scratch.star, scratch.mark);
     return scratch.placement.cost;
   }
 
@@ -120,34 +76,39 @@ class EdgeCandidates {
     note_gone(edge);
     metric_.fold(star, removed, kept, position);
     work_.collapse(removed, edge, work_.frame().from_unit(star.origin + position));
-    note_changed(kept);
+    scratch.pricer.forget();
+    patch_.gather(kept);
     return true;
   }
 
   std::span<const HalfEdgeId> gone() const { return gone_; }
-  std::span<const HalfEdgeId> changed() const { return changed_; }
-  std::span<const HalfEdgeId> touched() const { return touched_; }
+  std::span<const HalfEdgeId> changed() const {
+    return SummaryMetric<M> ? patch_.edges() : patch_.merged_edges();
+  }
+  std::span<const HalfEdgeId> touched() const {
+    return SummaryMetric<M> ? std::span<const HalfEdgeId>() : patch_.other_edges();
+  }
 
-  // Gives up the next test, if there is one left.
+  std::span<const double> evaluate_changed(double popped, Scratch& scratch) {
+    if constexpr (SummaryMetric<M>) {
+      scratch.mark.enter(DecimationPhase::cost);
+      scratch.pricer.price(work_, metric_, patch_, costs_);
+      refuse_locked();
+    } else {
+      costs_.clear();
+      for (const HalfEdgeId edge : changed()) costs_.push_back(evaluate(edge, popped, scratch));
+    }
+    return costs_;
+  }
+
+  void expect(HalfEdgeId /*next*/) {}
+
   std::optional<Relaxation> relax() {
     if (std::exchange(may_fold_over_, true)) return std::nullopt;
     return Relaxation::fold_over;
   }
 
  private:
-  Placement place(Scratch& scratch) const {
-    EdgeStar& star = scratch.star;
-    if constexpr (SummaryMetric<M>) {
-      const auto [a, b] = scratch.summaries.find_both(work_, metric_, star.a, star.b, step_);
-      scratch.mark.enter(DecimationPhase::cost);
-      return a == nullptr || b == nullptr ? Placement{} : metric_.place(star, *a, *b);
-    } else {
-      if (M::kNeedsStar && !gather_star(work_, star)) return {};
-      scratch.mark.enter(DecimationPhase::cost);
-      return metric_.place(star);
-    }
-  }
-
   HalfEdgeId edge_of(HalfEdgeId h) const {
     const HalfEdgeId twin = work_.mesh().twin(h);
     return twin.valid() ? std::min(h, twin) : h;
@@ -157,9 +118,19 @@ class EdgeCandidates {
     return work_.mesh().is_live(HalfEdgeMesh::face(h)) && edge_of(h) == h;
   }
 
+  bool is_locked(VertexId v) const { return !locked_.empty() && locked_[v.value] != 0; }
+
+  void refuse_locked() {
+    if (locked_.empty()) return;
+    for (std::size_t i = 0; i < costs_.size(); ++i) {
+      const auto [a, b, left, right] = patch_.corners()[i];
+      if (is_locked(patch_.vertex(a)) || is_locked(patch_.vertex(b))) costs_[i] = kRefused;
+    }
+  }
+
   // Border vertices merge along their border only. (An interior vertex may merge into it.)
   bool may_merge(const EdgeStar& star) const {
-    if (!locked_.empty() && (locked_[star.a.value] | locked_[star.b.value]) != 0) return false;
+    if (is_locked(star.a) || is_locked(star.b)) return false;
     return !(star.a_on_border && star.b_on_border) || work_.mesh().is_border(star.half_edge);
   }
 
@@ -172,31 +143,13 @@ class EdgeCandidates {
 
   // The faces of `v`, or some number above EdgeStar::kMaxFaces if there are more than that.
   std::uint32_t valence(VertexId v) const {
-    std::uint32_t count = 0;
-    for_each_outgoing(v, [&](HalfEdgeId) { ++count; });
-    return count;
-  }
-
-  template <class Visit>
-  void for_each_outgoing(VertexId v, const Visit& visit) const {
     const HalfEdgeId first = work_.mesh().outgoing(v);
     HalfEdgeId h = first;
     std::uint32_t count = 0;
     do {
-      visit(h);
       h = work_.mesh().rotate_ccw(h);
-    } while (h.valid() && h != first && ++count <= EdgeStar::kMaxFaces);
-  }
-
-  // Every edge of `v` with its other end.
-  template <class Visit>
-  void for_each_edge(VertexId v, const Visit& visit) const {
-    HalfEdgeId last;
-    for_each_outgoing(v, [&](HalfEdgeId h) {
-      visit(edge_of(h), work_.mesh().target(h));
-      last = HalfEdgeMesh::prev(h);
-    });
-    if (work_.mesh().is_border(last)) visit(last, work_.mesh().origin(last));
+    } while (++count <= EdgeStar::kMaxFaces && h.valid() && h != first);
+    return count;
   }
 
   // The edges of the two faces that a collapse of `edge` deletes. One of each face's outer edges
@@ -211,35 +164,12 @@ class EdgeCandidates {
     }
   }
 
-  // Edges of hubs are no candidates, and stale in the queue until they are popped and dropped.
-  bool is_hub(VertexId v) const { return valence(v) > EdgeStar::kMaxFaces; }
-
-  void note_changed(VertexId kept) {
-    changed_.clear();
-    touched_.clear();
-    ++step_;
-    if (is_hub(kept)) return;
-    for_each_edge(kept, [&](HalfEdgeId edge, VertexId neighbour) {
-      changed_.push_back(edge);
-      ring_mark_[neighbour.value] = step_;
-    });
-    ring_mark_[kept.value] = step_;
-    std::vector<HalfEdgeId>& around = M::kReach == EdgeReach::ring ? changed_ : touched_;
-    for_each_edge(kept, [&](HalfEdgeId, VertexId neighbour) {
-      if (is_hub(neighbour)) return;
-      for_each_edge(neighbour, [&](HalfEdgeId edge, VertexId other) {
-        const bool seen_twice = ring_mark_[other.value] == step_;
-        if (other != kept && !(seen_twice && other < neighbour)) around.push_back(edge);
-      });
-    });
-  }
-
   WorkingMesh& work_;
   M metric_;
   std::span<const std::uint8_t> locked_;
-  std::vector<HalfEdgeId> gone_, changed_, touched_;
-  std::vector<std::uint32_t> ring_mark_;  // by vertex: the last step that had it in the ring
-  std::uint32_t step_ = 0;
+  EdgePatch patch_;  // around the last collapse's merged vertex
+  std::vector<HalfEdgeId> gone_;
+  std::vector<double> costs_;
   bool may_fold_over_ = false;
 };
 

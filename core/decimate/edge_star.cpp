@@ -59,13 +59,10 @@ void gather_ends(const WorkingMesh& work, HalfEdgeId half_edge, EdgeStar& star) 
   star.b = mesh.target(half_edge);
   const Vec3d a = work.position(star.a), b = work.position(star.b);
   star.origin = work.frame().to_unit(0.5 * (a + b));
-  star.position_b = 0.5 * work.frame().scale * (b - a);
-  star.position_a = -1.0 * star.position_b;
-  const Vec3d middle = 0.5 * (a + b);
   const HalfEdgeId twin = mesh.twin(half_edge);
-  star.on_border = !twin.valid();
-  star.left = work.frame().scale * (work.position(mesh.apex(half_edge)) - middle);
-  if (twin.valid()) star.right = work.frame().scale * (work.position(mesh.apex(twin)) - middle);
+  const Vec3d left = work.position(mesh.apex(half_edge));
+  const Vec3d right = twin.valid() ? work.position(mesh.apex(twin)) : Vec3d{};
+  static_cast<PlacedEdge&>(star) = place_edge(work.frame(), a, b, left, right, !twin.valid());
   star.a_on_border = mesh.is_border(star.a);
   star.b_on_border = mesh.is_border(star.b);
 }
@@ -80,20 +77,19 @@ bool gather_star(const WorkingMesh& work, EdgeStar& star) {
 
 bool gather_ring(const WorkingMesh& work, VertexId v, PlacedRing& ring) {
   const HalfEdgeMesh& mesh = work.mesh();
-  const MetricFrame& frame = work.frame();
+  const Vec3d centre = work.position(v);
+  const double scale = work.frame().scale;
+  const auto relative = [&](VertexId to) { return scale * (work.position(to) - centre); };
   const HalfEdgeId first = mesh.outgoing(v);
-  HalfEdgeId last, h = first;
+  HalfEdgeId h = first;
+  ring.set(0, relative(mesh.target(first)));
   ring.faces = 0;
   do {
     if (ring.faces == OneRing::kMaxFaces) return false;
-    ring.neighbours[ring.faces++] = frame.to_unit(work.position(mesh.target(h)));
-    last = h;
+    ring.set(++ring.faces, relative(mesh.apex(h)));
     h = mesh.rotate_ccw(h);
   } while (h.valid() && h != first);
-  ring.centre = frame.to_unit(work.position(v));
-  ring.border = !h.valid();
-  ring.count = ring.faces;
-  if (ring.border) ring.neighbours[ring.count++] = frame.to_unit(work.position(mesh.apex(last)));
+  ring.finish(ring.faces + 1, !h.valid());
   return true;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <limits>
 #include <optional>
 #include <span>
@@ -19,7 +20,39 @@
 
 namespace pmesh {
 
-template <class Candidates>
+/// What the engine asks of a kind of candidate. Elements (vertices, edges or faces) are queued by
+/// their keys; one without a candidate has the key kRefused.
+template <class C>
+concept EngineCandidates = requires(C& candidates, const C& const_candidates,
+                                    typename C::ElementId element, typename C::Scratch& scratch,
+                                    double popped) {
+  /// Half-edge collapses that one collapse() makes.
+  { C::kCollapsesPerStep } -> std::convertible_to<std::uint32_t>;
+  /// What one thread needs to evaluate an element.
+  { scratch.mark } -> std::convertible_to<PhaseMark>;
+  /// Ids of elements are below slots(); about candidate_guess() of them are candidates.
+  { const_candidates.slots() } -> std::same_as<std::uint32_t>;
+  { const_candidates.candidate_guess() } -> std::same_as<std::uint32_t>;
+  /// The key of an element; `popped` is the key last popped, 0 at first.
+  { candidates.evaluate(element, popped, scratch) } -> std::same_as<double>;
+  /// The key of an element that was popped with the key `popped` and not collapsed.
+  { candidates.evaluate_legal(element, popped, scratch) } -> std::same_as<double>;
+  /// Is told, for what it is worth, which element will probably be popped next.
+  { candidates.expect(element) } -> std::same_as<void>;
+  /// Collapses a popped element; false if that is illegal.
+  { candidates.collapse(element, popped, scratch) } -> std::same_as<bool>;
+  /// After a collapse: elements that are no more, those to evaluate, and those to evaluate if they
+  /// are not in the queue.
+  { const_candidates.gone() } -> std::same_as<std::span<const typename C::ElementId>>;
+  { const_candidates.changed() } -> std::same_as<std::span<const typename C::ElementId>>;
+  { const_candidates.touched() } -> std::same_as<std::span<const typename C::ElementId>>;
+  /// The keys of changed(), in its order.
+  { candidates.evaluate_changed(popped, scratch) } -> std::same_as<std::span<const double>>;
+  /// Gives up the next test, if there is one left.
+  { candidates.relax() } -> std::same_as<std::optional<Relaxation>>;
+};
+
+template <EngineCandidates Candidates>
 class Engine {
  public:
   Engine(WorkingMesh& work, Candidates& candidates, const DecimateOptions& options)
@@ -98,6 +131,7 @@ class Engine {
       mark_.enter(DecimationPhase::heap);
       const typename Heap::Entry next = heap_.pop();
       popped_ = next.key;
+      if (!heap_.empty()) candidates_.expect(heap_.top().element);
       if (candidates_.collapse(next.element, popped_, scratch_)) {
         update_queue();
       } else {
@@ -107,13 +141,17 @@ class Engine {
     }
   }
 
-  // After a collapse.
+  // After a collapse: takes out the elements that are gone, gives those that have changed their
+  // new place, and one to those that were touched if they have none.
   void update_queue() {
     mark_.enter(DecimationPhase::heap);
     for (const ElementId element : candidates_.gone()) heap_.erase(element);
-    for (const ElementId element : candidates_.changed()) {
-      put(element, candidates_.evaluate(element, popped_, scratch_));
-    }
+    const std::span<const ElementId> changed = candidates_.changed();
+    for (const ElementId element : changed) heap_.prefetch_slot(element);
+    const std::span<const double> keys = candidates_.evaluate_changed(popped_, scratch_);
+    mark_.enter(DecimationPhase::heap);
+    for (const ElementId element : changed) heap_.prefetch_entry(element);
+    for (std::size_t i = 0; i < changed.size(); ++i) put(changed[i], keys[i]);
     for (const ElementId element : candidates_.touched()) {
       if (heap_.contains(element)) continue;
       put(element, candidates_.evaluate(element, popped_, scratch_));

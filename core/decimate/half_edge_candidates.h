@@ -14,6 +14,7 @@
 #include "core/decimate/legality.h"
 #include "core/decimate/metric.h"
 #include "core/decimate/one_ring.h"
+#include "core/decimate/ring_ahead.h"
 #include "core/decimate/working_mesh.h"
 
 namespace pmesh {
@@ -30,7 +31,6 @@ class HalfEdgeCandidates {
   using ElementId = VertexId;
   static constexpr std::uint32_t kCollapsesPerStep = 1;
 
-  // What one thread needs to evaluate a vertex.
   struct Scratch {
     PhaseMark mark;
     OneRing ring;
@@ -41,7 +41,11 @@ class HalfEdgeCandidates {
   };
 
   HalfEdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
-      : work_(work), metric_(metric), locked_(locked), heads_(work.mesh().vertex_slots()) {
+      : work_(work),
+        metric_(metric),
+        locked_(locked),
+        heads_(work.mesh().vertex_slots()),
+        ahead_(work) {
     metric_.start(work.mesh(), work.positions(), work.frame());
   }
 
@@ -80,6 +84,7 @@ class HalfEdgeCandidates {
     [[maybe_unused]] const bool gathered = gather_neighbours(work_.mesh(), removed, scratch.ring);
     assert(gathered);
     if (!is_legal(scratch, scratch.ring.index_of(kept))) return false;
+    ahead_.step();
     scratch.mark.enter(DecimationPhase::collapse);
     changed_.assign(scratch.ring.ids.begin(), scratch.ring.ids.begin() + scratch.ring.neighbours);
     work_.collapse(removed, work_.mesh().find_edge(removed, kept));
@@ -87,13 +92,26 @@ class HalfEdgeCandidates {
     return true;
   }
 
-  // After a collapse: elements that are no more, those to evaluate, and those to evaluate if they
-  // are not in the queue.
   std::span<const VertexId> gone() const { return {}; }
   std::span<const VertexId> changed() const { return changed_; }
   std::span<const VertexId> touched() const { return {}; }
 
-  // Gives up the next test, if there is one left.
+  std::span<const double> evaluate_changed(double popped, Scratch& scratch) {
+    prefetch_changed();
+    keys_.clear();
+    for (const VertexId v : changed_) {
+      ahead_.step();
+      keys_.push_back(evaluate(v, popped, scratch));
+    }
+    return keys_;
+  }
+
+  void expect(VertexId next) {
+    ahead_.start(next);
+    metric_.prefetch(next);
+    __builtin_prefetch(&heads_[next.value]);
+  }
+
   std::optional<Relaxation> relax() {
     if (std::exchange(may_fold_over_, true)) return std::nullopt;
     return Relaxation::fold_over;
@@ -107,9 +125,25 @@ class HalfEdgeCandidates {
     scratch.mark.enter(DecimationPhase::gather);
     if (!locked_.empty() && locked_[v.value] != 0) return false;
     if (!gather_neighbours(work_.mesh(), v, scratch.ring)) return false;
+    if constexpr (HasFloor<M>) prefetch_heads(scratch.ring);
     gather_positions(work_, scratch.ring);
     if constexpr (M::kGeometry != RingGeometry::neighbours) gather_faces(scratch.ring);
     return true;
+  }
+
+  // The metric's state of a head is read if the floor of its cost does not rule it out.
+  void prefetch_heads(const OneRing& ring) const {
+    for (std::uint32_t i = 0; i < ring.neighbours; ++i) metric_.prefetch(ring.ids[i]);
+  }
+
+  // The collapse itself has just read one side of the changed vertices; this asks for the other.
+  void prefetch_changed() const {
+    for (const VertexId v : changed_) {
+      metric_.prefetch(v);
+      const HalfEdgeId first = work_.mesh().outgoing(v), before = work_.mesh().rotate_cw(first);
+      work_.prefetch(work_.mesh().target(first));
+      if (before.valid()) work_.mesh().prefetch(before);
+    }
   }
 
   // The costs of all candidates of the gathered vertex.
@@ -180,6 +214,8 @@ class HalfEdgeCandidates {
   std::span<const std::uint8_t> locked_;
   std::vector<VertexId> heads_;  // by vertex in the queue: the kept vertex of its best candidate
   std::vector<VertexId> changed_;
+  std::vector<double> keys_;  // of changed_
+  RingAhead ahead_;
   bool may_fold_over_ = false;
 };
 

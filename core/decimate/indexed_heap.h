@@ -53,6 +53,19 @@ class IndexedHeap {
 
   bool contains(ElementId element) const { return slots_[element.value] != kNoIndex; }
 
+  /// Ask for what set() and erase() read to be brought into the caches: first the element's slot,
+  /// then, once that is there, its entry and those next to it in the heap.
+  void prefetch_slot(ElementId element) const { __builtin_prefetch(&slots_[element.value]); }
+  void prefetch_entry(ElementId element) const {
+    const std::uint32_t slot = slots_[element.value];
+    if (slot == kNoIndex) return;
+    const std::size_t first_child = std::size_t{slot} * kArity + 1;
+    for (const std::size_t near :
+         {std::size_t{slot}, std::size_t{slot} / kArity, first_child, first_child + kArity - 1}) {
+      if (near < entries_.size()) __builtin_prefetch(entries_.data() + near);
+    }
+  }
+
   /// Inserts `element`, or changes its key.
   void set(ElementId element, double key) {
     std::uint32_t slot = slot_of(element);

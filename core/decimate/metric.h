@@ -1,8 +1,8 @@
 // The seam between the decimation engine and the published metrics: concepts inside the engine, so
 // that no candidate costs an indirect call, and one table outside (core/metrics/table.h). This file
 // has the metrics that collapse half-edges and leave every vertex where it is; core/decimate/
-// edge_star.h those that collapse edges and place the merged vertex, core/decimate/triangle_star.h
-// those that collapse triangles.
+// edge_metric.h those that collapse edges and place the merged vertex, core/decimate/
+// triangle_metric.h those that collapse triangles.
 //
 // The engine gathers the geometry of every candidate once. A metric reads it and answers; it never
 // touches the heap, the mesh or the codec.
@@ -106,6 +106,8 @@ concept HalfEdgeMetric = requires(M metric, const M& const_metric, const HalfEdg
   { M::kGeometry } -> std::convertible_to<RingGeometry>;
   /// Makes the per-vertex state of a mesh, before anything else is asked.
   { metric.start(mesh, positions, frame) } -> std::same_as<void>;
+  /// Asks for the state of a vertex to be brought into the processor's caches.
+  { const_metric.prefetch(v) } -> std::same_as<void>;
   /// What all candidates of the ring's centre have in common.
   { const_metric.prepare(ring) } -> std::same_as<typename M::Prepared>;
   /// The cost, at least 0, of collapsing the ring's centre into its neighbour `head`. The

@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/decimate/wide_vectors.h"
+
 namespace pmesh {
 namespace {
-
-// A second version of a function for processors with vectors of four doubles, chosen when the
-// program starts. It gives the same bits: there is no fused multiply-add in it.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define PMESH_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
-#else
-#define PMESH_WIDE_VECTORS
-#endif
 
 // Loops run over whole blocks of four faces, so that they are vectorised without a tail: the rows
 // have the slack, and nobody reads it.

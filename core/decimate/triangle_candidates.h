@@ -19,7 +19,6 @@ class TriangleCandidates {
   using ElementId = FaceId;
   static constexpr std::uint32_t kCollapsesPerStep = 2;
 
-  // What one thread needs to evaluate a face.
   struct Scratch {
     PhaseMark mark;
     TriangleStar star;
@@ -68,7 +67,14 @@ class TriangleCandidates {
   std::span<const FaceId> changed() const { return changed_; }
   std::span<const FaceId> touched() const { return touched_; }
 
-  // Enters the next round, if there is one left.
+  std::span<const double> evaluate_changed(double popped, Scratch& scratch) {
+    costs_.clear();
+    for (const FaceId face : changed_) costs_.push_back(evaluate(face, popped, scratch));
+    return costs_;
+  }
+
+  void expect(FaceId /*next*/) {}
+
   std::optional<Relaxation> relax() {
     if (round_ + 1 < M::kRounds) {
       return ++round_ < M::kPlanarRounds ? Relaxation::turn : Relaxation::planarity;
@@ -144,6 +150,7 @@ class TriangleCandidates {
   std::span<const std::uint8_t> locked_;
   std::vector<FaceId> gone_, changed_, touched_;
   std::uint32_t round_ = 0;
+  std::vector<double> costs_;
   bool may_fold_over_ = false;
 };
 

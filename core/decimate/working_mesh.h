@@ -63,6 +63,12 @@ class WorkingMesh {
     kept = position;
   }
 
+  /// Asks for what there is of `v` to be brought into the caches.
+  void prefetch(VertexId v) const {
+    mesh_.prefetch(v);
+    __builtin_prefetch(&positions_[v.value]);
+  }
+
   HalfEdgeMesh take_mesh() { return std::move(mesh_); }
   std::vector<Vec3d> take_positions() { return std::move(positions_); }
   CollapseLog take_log() { return std::move(log_); }

@@ -129,6 +129,12 @@ class HalfEdgeMesh {
   }
   bool is_border(HalfEdgeId h) const { return !twin(h).valid(); }
   bool is_border(VertexId v) const { return is_border(outgoing(v)); }
+  /// Ask for what there is of a vertex or half-edge to be brought into the caches.
+  void prefetch(VertexId v) const { __builtin_prefetch(&outgoing_[v.value]); }
+  void prefetch(HalfEdgeId h) const {
+    __builtin_prefetch(&origins_[h.value]);
+    __builtin_prefetch(&twins_[h.value]);
+  }
   /// The corners of face f are elements 3f, 3f+1 and 3f+2; dead faces hold invalid ids.
   std::span<const VertexId> corners() const { return origins_; }
 

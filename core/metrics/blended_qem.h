@@ -44,6 +44,7 @@ class BlendedQem {
   double priority(const Prepared& /*prepared*/, double cost, double /*popped*/) const {
     return cost;
   }
+  void prefetch(VertexId v) const { remembered_.prefetch(v); }
   void fold(VertexId removed, VertexId kept) { remembered_.fold(removed, kept); }
 
  private:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/box.h"
+#include "core/decimate/edge_star.h"
 #include "core/metrics/blow_up.h"
 
 namespace pmesh {

@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/decimate/edge_star.h"
+#include "core/decimate/edge_metric.h"
 #include "core/metrics/quadric6.h"
 
 namespace pmesh {
@@ -31,7 +31,6 @@ namespace pmesh {
 class FeatureSensitive {
  public:
   static constexpr std::string_view kName = "feature-sensitive";
-  static constexpr EdgeReach kReach = EdgeReach::merged;
   static constexpr bool kNeedsStar = true;
   static constexpr double kDefaultWeight = 0.03;
 

@@ -36,6 +36,7 @@ class Melod {
 
   /// There is no geometric history.
   void start(const HalfEdgeMesh&, std::span<const Vec3d>, const MetricFrame&) {}
+  void prefetch(VertexId) const {}
   void fold(VertexId /*removed*/, VertexId /*kept*/) {}
 
   /// The visual importance w = 1 - |k| of the ring's centre, k being the area-weighted mean of its

@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cassert>
+
+#include "core/metrics/memoryless_lanes.h"
 
 namespace pmesh {
 namespace {
 
-// The paper's lambda: how volumes and border areas share in the cost.
-constexpr double kVolumeShare = 0.5;
-
-// The axis that makes the largest angle with n.
-Vec3d least_axis(Vec3d n) {
-  const double x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
-  if (x <= y && x <= z) return {1, 0, 0};
-  return y <= z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-}
+using namespace memoryless_lanes;
+using Summary = Memoryless::Summary;
 
 // Up to three planes that fix a position (section 3 of the paper).
 class Constraints {
@@ -55,16 +50,13 @@ class Constraints {
   }
 
  private:
-  // The paper's angle of one degree.
-  static constexpr double kSine2 = 3.0458648e-4, kCosine2 = 1 - kSine2;
-
   bool is_independent(Vec3d n) const {
     const double length2 = dot(n, n);
     if (!(length2 > 0)) return false;
     if (count_ == 0) return true;
     if (count_ == 1) {
       const double along = dot(n, normals_[0]);
-      return along * along < kCosine2 * length2 * dot(normals_[0], normals_[0]);
+      return along * along < (1 - kSine2) * length2 * dot(normals_[0], normals_[0]);
     }
     const Vec3d plane = cross(normals_[0], normals_[1]);
     const double out = dot(n, plane);
@@ -76,99 +68,112 @@ class Constraints {
   int count_ = 0;
 };
 
-Quadric shape_of(const Memoryless::Summary& sums) {
-  Quadric shape;  // squared lengths of the edges to the merged vertex, but for a constant
-  shape.xx = shape.yy = shape.zz = sums.neighbour_count;
-  shape.b = -1.0 * sums.neighbours;
-  return shape;
+// Squared lengths of the edges to the merged vertex, but for a constant.
+Quadric shape_of(const PlacedEdge& edge, const Summary& a, const Summary& b) {
+  const double count = a.neighbour_count + b.neighbour_count;
+  const Vec3d sum = a.neighbours + b.neighbours + a.neighbour_count * edge.position_a +
+                    b.neighbour_count * edge.position_b;
+  return {{count, 0, 0, count, 0, count}, -1.0 * sum, 0};
 }
 
-}  // namespace
+// The border edges of a star.
+struct StarBorder {
+  Quadric areas;  // f_B: squared areas of the triangles of a place and the edges.
+  Vec3d e1, e2;   // Twice the sum of their area vectors is p x e1 + e2.
 
-// The volume is a sixth of the height over the doubled area, times that area.
-void Memoryless::Summary::add_face(Vec3d a, Vec3d b, Vec3d c, double sign) {
-  const Vec3d n = cross(b - a, c - a);
-  const double d = dot(n, a);
-  volumes += Quadric::plane(n, -d, sign / 36);
-  normal += sign * n;
-  distance += sign * d;
-}
-
-void Memoryless::Summary::add_border(Vec3d from, Vec3d to, double sign) {
-  border = true;
-  border_areas += Quadric::squared_area(from, to).scaled(sign);
-  border_e1 += sign * (to - from);
-  border_e2 += sign * cross(to, from);
-}
-
-void Memoryless::Summary::add(const Summary& other) {
-  volumes += other.volumes;
-  normal += other.normal;
-  distance += other.distance;
-  neighbours += other.neighbours;
-  neighbour_count += other.neighbour_count;
-  if (!other.border) return;
-  border = true;
-  border_areas += other.border_areas;
-  border_e1 += other.border_e1;
-  border_e2 += other.border_e2;
-}
-
-Memoryless::Summary Memoryless::Summary::relative_to(Vec3d origin) const {
-  Summary moved = *this;
-  moved.volumes = volumes.relative_to(origin);
-  moved.distance -= dot(normal, origin);
-  moved.neighbours += -neighbour_count * origin;
-  if (!border) return moved;
-  moved.border_areas = border_areas.relative_to(origin);
-  moved.border_e2 += cross(origin, border_e1);
-  return moved;
-}
-
-Memoryless::Summary Memoryless::summarise(const PlacedRing& ring) const {
-  Summary sums;
-  for (std::uint32_t i = 0; i < ring.faces; ++i) {
-    sums.add_face(ring.centre, ring.neighbours[i], ring.after(i), 1);
+  StarBorder(const PlacedEdge& edge, const Summary& a, const Summary& b) {
+    if (edge.on_border) add(edge.position_a, edge.position_b);
+    if (a.border) add(edge.position_a + a.previous, edge.position_a);
+    if (a.border && !edge.on_border) add(edge.position_a, edge.position_a + a.next);
+    if (b.border) add(edge.position_b, edge.position_b + b.next);
+    if (b.border && !edge.on_border) add(edge.position_b + b.previous, edge.position_b);
   }
-  for (std::uint32_t i = 0; i < ring.count; ++i) sums.neighbours += ring.neighbours[i];
-  sums.neighbour_count = ring.count;
-  sums.border = ring.border;
-  if (ring.border) {
-    sums.add_border(ring.centre, ring.neighbours[0], 1);
-    sums.add_border(ring.neighbours[ring.count - 1], ring.centre, 1);
-  }
-  return sums;
-}
 
-Placement Memoryless::place(const EdgeStar& star, const Summary& a, const Summary& b) const {
-  Summary both = a;
-  both.add(b);
-  Summary sums = both.relative_to(star.origin);  // and the edge and its faces were added twice
-  sums.add_face(star.position_a, star.position_b, star.left, -1);
-  if (star.on_border) {
-    sums.add_border(star.position_a, star.position_b, -1);
-  } else {
-    sums.add_face(star.position_b, star.position_a, star.right, -1);
+  void add(Vec3d from, Vec3d to) {
+    areas += Quadric::squared_area(from, to);
+    e1 += to - from;
+    e2 += cross(to, from);
   }
-  const double length2 = 4 * dot(star.position_b, star.position_b);
-  Quadric objective = sums.volumes.scaled(kVolumeShare);
-  if (sums.border) objective += sums.border_areas.scaled((1 - kVolumeShare) * length2);
 
-  Constraints constraints;
-  if (sums.border) {
-    // Border preservation (section 4.2): the sum of the area vectors, (p x e1 + e2) / 2, is least
-    // on the line of direction e1 through `on_line`.
-    const Vec3d e1 = sums.border_e1;
-    const Vec3d on_line = -1 / dot(e1, e1) * cross(e1, sums.border_e2);
+  // Border preservation (section 4.2): the sum of the area vectors is least on the line of
+  // direction e1 through `on_line`.
+  void constrain(Constraints& constraints) const {
+    const Vec3d on_line = -1 / dot(e1, e1) * cross(e1, e2);
     const Vec3d across = cross(e1, least_axis(e1)), upright = cross(e1, across);
     constraints.add(across, dot(across, on_line));
     constraints.add(upright, dot(upright, on_line));
   }
-  constraints.add(sums.normal, sums.distance);  // volume preservation (section 4.1)
-  constraints.add_least(objective);
-  constraints.add_least(shape_of(sums));
+};
+
+// At a border, or where volume and cost leave a direction open.
+Placement place_with_care(const PlacedEdge& edge, const Summary& a, const Summary& b) {
+  auto [cost, normal, distance] =
+      star_volumes(edge.position_b, edge.left, edge.on_border ? Vec3d{} : edge.right, a.areas,
+                   a.normal, b.areas, b.normal);
+  Constraints constraints;
+  if (a.border || b.border) {
+    const StarBorder border(edge, a, b);
+    const double length2 = 4 * dot(edge.position_b, edge.position_b);
+    cost += border.areas.scaled((1 - kVolumeShare) / kVolumeFactor * length2);
+    border.constrain(constraints);
+  }
+  constraints.add(normal, distance);
+  constraints.add_least(cost);
+  constraints.add_least(shape_of(edge, a, b));
   const Vec3d position = constraints.count() == 3 ? constraints.solve() : Vec3d{};
-  return {std::max(0.0, objective(position)), position};
+  return {std::max(0.0, kVolumeFactor * cost(position)), position};
+}
+
+Edges rows_of(std::span<const SummedEdge<Summary>> edges) {
+  Edges rows;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto& [edge, a, b] = edges[i];
+    rows.half.set(i, edge.position_b);
+    rows.left.set(i, edge.left);
+    rows.right.set(i, edge.right);
+    rows.normal_a.set(i, a->normal);
+    rows.normal_b.set(i, b->normal);
+    rows.areas_a.set(i, a->areas);
+    rows.areas_b.set(i, b->areas);
+  }
+  return rows;
+}
+
+// At most kBatch edges.
+void place_batch(std::span<const SummedEdge<Summary>> edges, std::span<Placement> placements) {
+  Places places;
+  memoryless_lanes::place(rows_of(edges), edges.size(), places);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto& [edge, a, b] = edges[i];
+    if (places.is_settled[i] != 0 && !a->border && !b->border) {
+      placements[i] = {places.cost[i], places.position[i]};
+    } else {
+      placements[i] = place_with_care(edge, *a, *b);
+    }
+  }
+}
+
+}  // namespace
+
+Summary Memoryless::summarise(const PlacedRing& ring) const {
+  FaceSums sums;
+  sum_faces(ring, sums);
+  Summary summary{sums.areas, sums.normal, sums.seconds, double(ring.count), ring.border, {}, {}};
+  if (ring.border) {
+    summary.next = ring.neighbour(0);
+    summary.previous = ring.neighbour(ring.count - 1);
+    summary.neighbours += summary.next;  // of no face the second
+  }
+  return summary;
+}
+
+void Memoryless::place(std::span<const SummedEdge<Summary>> edges,
+                       std::span<Placement> placements) const {
+  assert(edges.size() == placements.size());
+  for (std::size_t first = 0; first < edges.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, edges.size() - first);
+    place_batch(edges.subspan(first, count), placements.subspan(first, count));
+  }
 }
 
 }  // namespace pmesh

@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-#include "core/decimate/edge_star.h"
+#include "core/decimate/edge_metric.h"
 #include "core/metrics/quadric.h"
 
 namespace pmesh {
@@ -16,28 +16,21 @@ namespace pmesh {
 class Memoryless {
  public:
   static constexpr std::string_view kName = "memoryless";
-  static constexpr EdgeReach kReach = EdgeReach::ring;
 
-  /// Sums over the faces and border edges of a vertex, in the unit frame.
+  /// What the faces of a vertex sum up to, in positions relative to it, where all their planes pass
+  /// through the origin. n is twice a face's area vector.
   struct Summary {
-    Quadric volumes;      ///< f_V: squared volumes of the tetrahedra of a place and the faces.
-    Vec3d normal;         ///< Of the faces' doubled areas.
-    double distance = 0;  ///< Volume preservation: normal . place = distance.
-    Vec3d neighbours;     ///< Positions.
+    Symmetric areas;   ///< Of n n^T.
+    Vec3d normal;      ///< Of n.
+    Vec3d neighbours;  ///< Of the neighbours' positions.
     double neighbour_count = 0;
     bool border = false;
-    Quadric border_areas;  ///< f_B: squared areas of the triangles of a place and the border edges.
-    Vec3d border_e1, border_e2;
-
-    void add_face(Vec3d a, Vec3d b, Vec3d c, double sign);
-    void add_border(Vec3d from, Vec3d to, double sign);
-    void add(const Summary& other);
-    Summary relative_to(Vec3d origin) const;
+    Vec3d previous, next;  ///< Border vertex: its neighbours along the border.
   };
 
   void start(const HalfEdgeMesh&, std::span<const Vec3d>, const MetricFrame&) {}
   Summary summarise(const PlacedRing& ring) const;
-  Placement place(const EdgeStar& star, const Summary& a, const Summary& b) const;
+  void place(std::span<const SummedEdge<Summary>> edges, std::span<Placement> placements) const;
   void fold(const EdgeStar&, VertexId /*removed*/, VertexId /*kept*/, Vec3d /*position*/) {}
 };
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/decimate/edge_star.h"
+#include "core/decimate/edge_metric.h"
 #include "core/decimate/metric.h"
 #include "core/metrics/quadric.h"
 
@@ -18,6 +18,11 @@ class QuadricField {
  public:
   void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame);
   const Quadric& operator[](VertexId v) const { return quadrics_[v.value]; }
+  /// A quadric is longer than a cache line.
+  void prefetch(VertexId v) const {
+    __builtin_prefetch(&quadrics_[v.value]);
+    __builtin_prefetch(&quadrics_[v.value].c);
+  }
   void fold(VertexId removed, VertexId kept) { quadrics_[kept.value] += quadrics_[removed.value]; }
 
  private:
@@ -41,6 +46,8 @@ class QemSubset {
     return {quadrics_[ring.centre].relative_to(ring.origin)};
   }
 
+  void prefetch(VertexId v) const { quadrics_.prefetch(v); }
+
   /// Equation of section 4: (Q1 + Q2)(head).
   double cost(const OneRing& ring, const Prepared& prepared, std::uint32_t head,
               const MovedFaces& moved) const;
@@ -61,7 +68,6 @@ class QemSubset {
 class QemSolved {
  public:
   static constexpr std::string_view kName = "qem";
-  static constexpr EdgeReach kReach = EdgeReach::merged;
   static constexpr bool kNeedsStar = false;
 
   void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame) {

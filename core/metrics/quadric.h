@@ -7,16 +7,39 @@
 
 namespace pmesh {
 
-struct Quadric {
-  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  ///< A
+/// A symmetric matrix.
+struct Symmetric {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+  /// weight n n^T
+  static Symmetric outer(Vec3d n, double weight) {
+    const Vec3d w = weight * n;
+    return {w.x * n.x, w.x * n.y, w.x * n.z, w.y * n.y, w.y * n.z, w.z * n.z};
+  }
+
+  Symmetric& operator+=(const Symmetric& m) {
+    xx += m.xx, xy += m.xy, xz += m.xz, yy += m.yy, yz += m.yz, zz += m.zz;
+    return *this;
+  }
+  friend Symmetric operator+(Symmetric m, const Symmetric& n) { return m += n; }
+  friend Symmetric operator*(double s, const Symmetric& m) {
+    return {s * m.xx, s * m.xy, s * m.xz, s * m.yy, s * m.yz, s * m.zz};
+  }
+
+  Vec3d times(Vec3d p) const {
+    return {xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z,
+            xz * p.x + yz * p.y + zz * p.z};
+  }
+  double trace() const { return xx + yy + zz; }
+};
+
+struct Quadric : Symmetric {  // A
   Vec3d b;
   double c = 0;
 
   /// weight (n p + d)^2
   static Quadric plane(Vec3d n, double d, double weight) {
-    const Vec3d w = weight * n;
-    return {w.x * n.x, w.x * n.y, w.x * n.z, w.y * n.y,
-            w.y * n.z, w.z * n.z, d * w,     d * d * weight};
+    return {Symmetric::outer(n, weight), d * (weight * n), d * d * weight};
   }
 
   /// The squared area of the triangle of p and a line from `from` to `to`: |p x e1 + e2|^2 / 4 with
@@ -24,28 +47,24 @@ struct Quadric {
   static Quadric squared_area(Vec3d from, Vec3d to) {
     const Vec3d e1 = to - from, e2 = cross(to, from);
     const double s = 0.25, length2 = dot(e1, e1);
-    return {s * (length2 - e1.x * e1.x), -s * e1.x * e1.y, -s * e1.x * e1.z,
-            s * (length2 - e1.y * e1.y), -s * e1.y * e1.z, s * (length2 - e1.z * e1.z),
-            s * cross(e1, e2),           s * dot(e2, e2)};
+    return {{s * (length2 - e1.x * e1.x), -s * e1.x * e1.y, -s * e1.x * e1.z,
+             s * (length2 - e1.y * e1.y), -s * e1.y * e1.z, s * (length2 - e1.z * e1.z)},
+            s * cross(e1, e2),
+            s * dot(e2, e2)};
   }
 
   Quadric& operator+=(const Quadric& q) {
-    xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
+    Symmetric::operator+=(q);
     b += q.b;
     c += q.c;
     return *this;
   }
   friend Quadric operator+(Quadric p, const Quadric& q) { return p += q; }
 
-  Vec3d times(Vec3d p) const {
-    return {xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z,
-            xz * p.x + yz * p.y + zz * p.z};
-  }
   double operator()(Vec3d p) const { return dot(p, times(p) + 2.0 * b) + c; }
   Quadric scaled(double s) const {
-    return {s * xx, s * xy, s * xz, s * yy, s * yz, s * zz, s * b, s * c};
+    return {s * static_cast<const Symmetric&>(*this), s * b, s * c};
   }
-  double trace() const { return xx + yy + zz; }
 
   /// Where the function is least when a spring of `stiffness` times A's trace pulls to the origin:
   /// the place nearest to the origin if A leaves a direction open. The origin if A is zero.

@@ -6,12 +6,12 @@
 #include <array>
 #include <string_view>
 
-#include "core/decimate/triangle_star.h"
+#include "core/decimate/triangle_metric.h"
 
 namespace pmesh {
 
-/// Collapses the triangle whose big triangle (see triangle_star.h) is flattest for its area, among
-/// those that are nearly coplanar with their neighbours.
+/// Collapses the triangle whose big triangle (see triangle_metric.h) is flattest for its area,
+/// among those that are nearly coplanar with their neighbours.
 class TriangleCollapse {
  public:
   static constexpr std::string_view kName = "triangle";

@@ -76,7 +76,11 @@ class Reference {
 
   Placement place() const {
     if constexpr (SummaryMetric<M>) {
-      return metric_.place(star_, summary(star_.a), summary(star_.b));
+      const auto a = summary(star_.a), b = summary(star_.b);
+      const SummedEdge<typename M::Summary> edge{star_, &a, &b};
+      Placement placement;
+      metric_.place(std::span(&edge, 1), std::span(&placement, 1));
+      return placement;
     } else {
       return metric_.place(star_);
     }

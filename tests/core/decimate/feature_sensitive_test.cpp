@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/decimate/decimate.h"
+#include "core/decimate/edge_star.h"
 #include "core/metrics/blow_up.h"
 #include "core/metrics/table.h"
 #include "tests/core/decimate/rings.h"

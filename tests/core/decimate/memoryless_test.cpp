@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/decimate/edge_star.h"
 #include "tests/core/decimate/rings.h"
 #include "tests/fixtures/shapes.h"
 
@@ -15,13 +16,18 @@ EdgeStar star_of(const WorkingMesh& work, std::uint32_t a, std::uint32_t b) {
   return star;
 }
 
+Memoryless::Summary summary_of(const WorkingMesh& work, VertexId v) {
+  PlacedRing ring;
+  EXPECT_TRUE(gather_ring(work, v, ring));
+  return Memoryless().summarise(ring);
+}
+
 Placement place(const WorkingMesh& work, const EdgeStar& star) {
-  const auto summary = [&](VertexId v) {
-    PlacedRing ring;
-    EXPECT_TRUE(gather_ring(work, v, ring));
-    return Memoryless().summarise(ring);
-  };
-  return Memoryless().place(star, summary(star.a), summary(star.b));
+  const Memoryless::Summary a = summary_of(work, star.a), b = summary_of(work, star.b);
+  const SummedEdge<Memoryless::Summary> edge{star, &a, &b};
+  Placement placement;
+  Memoryless().place(std::span(&edge, 1), std::span(&placement, 1));
+  return placement;
 }
 
 // Six times the volume between the surface of the star and its midpoint, once the ends are at
@@ -65,6 +71,27 @@ TEST(Memoryless, PreservesTheVolume) {
     const EdgeStar star = star_of(work, v, neighbour.value);
     const Placement placement = place(work, star);
     EXPECT_NEAR(volume(star, &placement.position), volume(star, nullptr), 1e-14);
+  }
+}
+
+TEST(Memoryless, PlacesAnEdgeAloneAsAmongOthers) {
+  const IndexedMesh mesh = shapes::bumped(shapes::grid(6, 6), 0.05);
+  const WorkingMesh work(half_edges(mesh), mesh.positions);
+  std::vector<Memoryless::Summary> summaries(2 * 40);
+  std::vector<SummedEdge<Memoryless::Summary>> edges(40);
+  std::vector<Placement> placements(40);
+  for (std::uint32_t v = 0; v < 40; ++v) {
+    const VertexId neighbour = work.mesh().target(work.mesh().outgoing(VertexId(v)));
+    summaries[2 * v] = summary_of(work, VertexId(v));
+    summaries[2 * v + 1] = summary_of(work, neighbour);
+    edges[v] = {star_of(work, v, neighbour.value), &summaries[2 * v], &summaries[2 * v + 1]};
+  }
+  Memoryless().place(edges, placements);
+  for (std::uint32_t v = 0; v < 40; ++v) {
+    Placement alone;
+    Memoryless().place(std::span(&edges[v], 1), std::span(&alone, 1));
+    EXPECT_EQ(alone.cost, placements[v].cost) << v;
+    EXPECT_EQ(alone.position, placements[v].position) << v;
   }
 }
 

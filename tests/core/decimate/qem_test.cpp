@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/decimate/edge_star.h"
 #include "tests/core/decimate/rings.h"
 #include "tests/fixtures/shapes.h"
 
