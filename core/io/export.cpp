@@ -105,6 +105,10 @@ bool fits_single_precision(const Lattice& lattice) {
   return gap / 2 <= lattice.step / 8;
 }
 
+Vec3<float> ExportedPositions::to_single(Vec3d p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
 Bytes format_mesh(MeshFormat format, const LatticeMesh& mesh, const Lattice& lattice) {
   assert(format == MeshFormat::ply || format == MeshFormat::obj);
   const bool single = fits_single_precision(lattice);

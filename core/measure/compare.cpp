@@ -36,10 +36,9 @@ SurfaceDistance distance_from(const Surface& source, const Surface& target,
   const SurfaceDistance over_edges = sampled_distance(source, edges, target, options.threads);
   const SurfaceDistance over_vertices = vertex_distance(source, target, options.threads);
 
-  DistanceBound farthest(source, target, kMaxTolerance, options.threads, nullptr);
+  DistanceBound farthest(source, target, kMaxTolerance, options.threads);
   farthest.reach(std::max({over_faces.max, over_edges.max, over_vertices.max}));
-  farthest.sweep();
-  farthest.refine();
+  farthest.find();
 
   // A surface without area is but its edges.
   SurfaceDistance distance = faces.count() > 0 ? over_faces : over_edges;

@@ -55,10 +55,17 @@ double FaceBounder::good_enough() const {
   return std::max((1 + tolerance_) * reached_, kNoDistance);
 }
 
-FaceBounder::Bound FaceBounder::bound(const Corners& face, std::uint32_t hint,
-                                      std::uint32_t most_cuts) {
+void FaceBounder::reach(const NearestFace& nearest, Vec3d point) {
+  const double distance = std::sqrt(nearest.squared);
+  if (distance <= reached_) return;
+  reached_ = distance;
+  farthest_ = point;
+}
+
+double FaceBounder::bound(const Corners& face, std::uint32_t hint, std::uint32_t most_cuts) {
   constexpr std::uint32_t kCutsOfAnEasyFace = 16;
-  bound_ = {};
+  bound_ = 0;
+  near_faces_.clear();
   pieces_.clear();
   push(ConvexPolygon(face), hint);
   const auto is_good = [&] { return pieces_.empty() || pieces_.front().bound <= good_enough(); };
@@ -84,10 +91,10 @@ void FaceBounder::push(const ConvexPolygon& polygon, std::uint32_t hint) {
 }
 
 void FaceBounder::accept(const Estimate& estimate) {
-  bound_.distance = std::max(bound_.distance, estimate.bound);
-  bound_.witnesses.add(target_.given_face(estimate.near));
+  bound_ = std::max(bound_, estimate.bound);
+  near_faces_.push_back({estimate.near, estimate.bound});
   for (const std::uint32_t face : estimate.beyond) {
-    if (face != kNoIndex) bound_.witnesses.add(target_.given_face(face));
+    if (face != kNoIndex) near_faces_.push_back({face, estimate.bound});
   }
 }
 
@@ -112,7 +119,7 @@ FaceBounder::Estimate FaceBounder::estimate(const ConvexPolygon& polygon, std::u
   const NearestFace near = target_.near(center, last.squared < squared ? last_near_ : hint);
   if (const Estimate found = by(near); is_good(found) || is_near(near.squared)) return found;
   const NearestFace nearest = target_.nearest(center, near.face);
-  reach(std::sqrt(nearest.squared));
+  reach(nearest, center);
   return by(nearest);
 }
 
@@ -165,7 +172,7 @@ FaceBounder::Estimate FaceBounder::estimate_around(std::span<const Vec3d> corner
 void FaceBounder::reach_corners(std::span<const Vec3d> corners, std::uint32_t face) {
   for (const Vec3d corner : corners) {
     if (target_.squared_distance(corner, face) <= reached_ * reached_) continue;
-    reach(std::sqrt(target_.nearest(corner, face).squared));
+    reach(target_.nearest(corner, face), corner);
   }
 }
 

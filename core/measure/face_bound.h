@@ -10,13 +10,19 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "core/measure/bound_memory.h"
 #include "core/measure/polygon.h"
 #include "core/measure/surface.h"
 
 namespace pmesh {
+
+struct FaceDistance {
+  std::uint32_t face;
+  double distance;
+};
 
 /// Bounds the faces of one surface, one after another, by another surface.
 ///
@@ -30,20 +36,19 @@ class FaceBounder {
 
   double reached() const { return reached_; }
   double good_enough() const;
-  void reach(double distance) {
-    if (distance > reached_) reached_ = distance;
-  }
+  /// Where `reached` is met, if that is more than it was at first.
+  std::optional<Vec3d> farthest() const { return farthest_; }
 
   /// A face of the target that was near to what was bounded last.
   std::uint32_t last_near() const { return last_near_; }
 
-  struct Bound {
-    double distance = 0;
-    Witnesses witnesses;  ///< Faces of the target by their given numbers.
-  };
   /// No point of `face` is farther than this. Found by at most `most_cuts` cuts; good enough if
   /// those suffice. `hint` is a face of the target, better a near one.
-  Bound bound(const Corners& face, std::uint32_t hint, std::uint32_t most_cuts);
+  double bound(const Corners& face, std::uint32_t hint, std::uint32_t most_cuts);
+
+  /// Of the face bounded last: every point of it is that near to one of these faces of the target,
+  /// which may be named more than once.
+  std::span<const FaceDistance> near_faces() const { return near_faces_; }
 
  private:
   struct Estimate {
@@ -58,6 +63,7 @@ class FaceBounder {
     double bound = 0;
     friend bool operator<(const Piece& a, const Piece& b) { return a.bound < b.bound; }
   };
+  void reach(const NearestFace& nearest, Vec3d point);
   Estimate estimate(const ConvexPolygon& polygon, std::uint32_t hint);
   Estimate estimate_around(std::span<const Vec3d> corners, std::uint32_t face) const;
   void reach_corners(std::span<const Vec3d> corners, std::uint32_t face);
@@ -70,9 +76,11 @@ class FaceBounder {
   const Surface& target_;
   double tolerance_;
   double reached_;
+  std::optional<Vec3d> farthest_;
   std::uint32_t last_near_ = 0;
   std::vector<Piece> pieces_;  // not yet good enough: a heap, the worst is cut next
-  Bound bound_;                // of the pieces that are
+  double bound_ = 0;           // of the pieces that are
+  std::vector<FaceDistance> near_faces_;
 };
 
 }  // namespace pmesh

@@ -51,6 +51,11 @@ class FaceTree {
   }
   /// Around all below a node.
   Box<float> box(std::uint32_t level, std::uint32_t node) const;
+  /// Around its child k < kWidth; empty (low above high) if it has none.
+  Box<float> child_box(std::uint32_t level, std::uint32_t node, std::uint32_t k) const {
+    const Node& n = levels_[level][node];
+    return {{n.low[0][k], n.low[1][k], n.low[2][k]}, {n.high[0][k], n.high[1][k], n.high[2][k]}};
+  }
 
  private:
   // Four numbers that are added, multiplied and compared at once (an extension of GCC and Clang).

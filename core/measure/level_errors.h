@@ -4,26 +4,24 @@
 // `max_error`, and some point is nearly as far (kErrorTolerance below it). So compare_surfaces(),
 // which looks at points, never finds more, whatever its samples and seed.
 //
-// Made for a sequence of nested LODs: what is known of faces that have not changed since the level
-// before is not computed again (core/measure/bound_memory.h). The same sequence of LODs has the
-// same errors; in another, max_error may differ within its tolerance.
+// What is known of the faces beforehand is used: only those that might be farther than any distance
+// met are looked at.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "core/base/result.h"
-#include "core/measure/bound_memory.h"
+#include "core/measure/face_errors.h"
+#include "core/measure/sampled_distance.h"
 #include "core/measure/sampling.h"
 #include "core/measure/surface.h"
-#include "core/mesh/indexed_mesh.h"
 
 namespace pmesh {
 
 /// max_error is at most this much above the distance of some point, as a fraction of it (but see
 /// core/measure/distance_bound.h on the bounded effort).
-inline constexpr double kErrorTolerance = 0.18;
+inline constexpr double kErrorTolerance = 0.2;
 
 /// Two-sided, in the mesh's units.
 struct LevelError {
@@ -40,30 +38,36 @@ struct LevelErrorOptions {
 /// Threads: one at a time; uses `threads` itself.
 class LevelErrors {
  public:
-  /// Fails (bad_input) if the mesh is too large to be measured. `original` is copied.
-  /// Preconditions: it has a triangle, indices are in range, positions finite. About 120 bytes a
-  /// face of the original, and 150 a face of the largest LOD.
-  static Result<LevelErrors> of(MeshView original, const LevelErrorOptions& options);
+  /// `original` is copied; `frame` is that of its box (unit_frame()). Preconditions: it has a
+  /// triangle, indices are in range, positions finite. About 80 bytes a face of the original, and
+  /// 90 a face of the largest LOD.
+  LevelErrors(MeshView original, const UnitFrame& frame, const LevelErrorOptions& options);
 
   /// The error of an LOD, whose positions are to be those that a user gets (rounded as exported).
-  /// Preconditions as above; the LOD is near the original's bounding box. Fast if LODs come from
-  /// coarse to fine or back and faces that stay keep their numbers.
-  LevelError measure(MeshView lod);
+  /// Preconditions as above; the LOD is near the original's bounding box. `known` holds what is
+  /// known of its faces, and more is known afterwards.
+  /// Fastest if LODs come from fine to coarse and their faces of one number are in one place.
+  LevelError measure(MeshView lod, FaceErrors& known);
 
  private:
-  LevelErrors(MeshView original, const UnitFrame& frame, const LevelErrorOptions& options);
-  void note_changes(MeshView lod);
-  double bound_of_maximum(const Surface& lod, double reached);
+  // Where the original was far from LODs before, and LODs from the original: it is often the same
+  // with the next.
+  struct FarPoints {
+    std::vector<Vec3d> of_original, of_lods;
+  };
+  class Level;
+  Surface surface_of(MeshView lod);
+  SurfaceDistance sample_original(const Surface& lod);
 
   UnitFrame frame_;
   LevelErrorOptions options_;
   std::unique_ptr<const Surface> original_;  // where it is, so that the sampler may be moved
   SurfaceSampler samples_;                   // of the original
 
-  std::uint32_t level_ = 0;                // counts the calls of measure()
-  IndexedMesh previous_;                   // the LOD before
-  std::vector<std::uint32_t> changed_at_;  // by face of the LODs: the level when it last changed
-  BoundMemory forward_, backward_;
+  // Of the LOD before, by the numbers given, for the next one:
+  SpatialOrder order_;
+  std::vector<std::uint32_t> near_samples_;  // the faces nearest to the original's samples
+  FarPoints far_;
 };
 
 }  // namespace pmesh

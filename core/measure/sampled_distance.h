@@ -1,7 +1,9 @@
 // Distances from a surface to another, at sampled points.
 #pragma once
 
-#include "core/measure/bound_memory.h"
+#include <cstdint>
+#include <vector>
+
 #include "core/measure/sampling.h"
 #include "core/measure/surface.h"
 
@@ -13,10 +15,11 @@ struct SurfaceDistance {
 };
 
 /// Over the sampler's points, or all vertices of `source`, in unit lengths; zeros if there are
-/// none. Deterministic, whatever the threads. `memory`, if not null, knows where to begin.
+/// none. Deterministic, whatever the threads. `near`, if not null, is by sample: a face of the
+/// target to begin with, or kNoIndex; and the nearest one afterwards.
 SurfaceDistance sampled_distance(const Surface& source, const SurfaceSampler& sampler,
                                  const Surface& target, unsigned threads,
-                                 const BoundMemory* memory = nullptr);
+                                 std::vector<std::uint32_t>* near = nullptr);
 SurfaceDistance vertex_distance(const Surface& source, const Surface& target, unsigned threads);
 
 }  // namespace pmesh

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pmesh {
 namespace {
@@ -34,15 +35,24 @@ SamplePoint point_on_outline(std::uint32_t face, const Corners& t, double fracti
 }  // namespace
 
 SurfaceSampler::SurfaceSampler(const Surface& surface, Over over, std::uint32_t count,
-                               std::uint64_t seed)
-    : surface_(surface), over_(over), count_(count), seed_(mixed(seed)) {
+                               std::uint64_t seed, std::vector<double> density)
+    : surface_(surface),
+      over_(over),
+      count_(count),
+      seed_(mixed(seed)),
+      density_(std::move(density)) {
   weight_up_to_.reserve(surface.face_count());
-  double sum = 0;
+  double sum = 0, size = 0;
   for (std::uint32_t face = 0; face < surface.face_count(); ++face) {
     const Corners t = surface.corners(face);
-    if (!is_collapsed(t)) sum += over == Over::faces ? area(t) : perimeter(t);
+    if (!is_collapsed(t)) {
+      const double of_face = over == Over::faces ? area(t) : perimeter(t);
+      size += of_face;
+      sum += density_.empty() ? of_face : density_[face] * of_face;
+    }
     weight_up_to_.push_back(sum);
   }
+  if (size > 0) mean_density_ = sum / size;
 }
 
 double SurfaceSampler::random(std::uint32_t i, std::uint32_t draw) const {

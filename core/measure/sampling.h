@@ -19,17 +19,26 @@ struct SamplePoint {
 };
 
 /// `count` points over the faces, or over their edges, of a surface. The total of the faces'
-/// weights (area; perimeter) is cut into `count` equal strata along the spatial order of the faces,
-/// with a random point in each: a uniform density, and neighbours one after another.
+/// weights (area; perimeter; either times a density) is cut into `count` equal strata along the
+/// spatial order of the faces, with a random point in each: a uniform density, or the one given,
+/// and neighbours one after another.
 class SurfaceSampler {
  public:
   enum class Over : std::uint8_t { faces, edges };
 
-  /// Collapsed faces get no sample. `surface` must outlive the sampler.
-  SurfaceSampler(const Surface& surface, Over over, std::uint32_t count, std::uint64_t seed);
+  /// Collapsed faces get no sample. `density`, by face, is empty or all above 0. `surface` must
+  /// outlive the sampler.
+  SurfaceSampler(const Surface& surface, Over over, std::uint32_t count, std::uint64_t seed,
+                 std::vector<double> density = {});
 
   /// Samples to be had: none if no face has a weight.
   std::uint32_t count() const { return total() > 0 ? count_ : 0; }
+
+  /// What a sample on `face` counts, if the mean is to be that over the surface: 1 if the density
+  /// is uniform.
+  double weight(std::uint32_t face) const {
+    return density_.empty() ? 1 : mean_density_ / density_[face];
+  }
 
   /// Calls visit(point) for the samples begin .. end - 1 in order. end <= count().
   template <class Visit>
@@ -53,6 +62,8 @@ class SurfaceSampler {
   Over over_;
   std::uint32_t count_;
   std::uint64_t seed_;
+  std::vector<double> density_;  // by face, or empty
+  double mean_density_ = 1;
   std::vector<double> weight_up_to_;  // by face: its weight and that of all before
 };
 

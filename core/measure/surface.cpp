@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/measure/face_neighbours.h"
 #include "core/measure/spatial_order.h"
@@ -13,26 +14,10 @@
 namespace pmesh {
 namespace {
 
-// The faces of `mesh` in spatial order of their centres.
-std::vector<std::uint32_t> ordered_faces(MeshView mesh, const UnitFrame& frame, unsigned threads) {
-  std::vector<Vec3d> centers(mesh.triangles.size());
-  for_blocks(static_cast<std::uint32_t>(centers.size()), threads,
-             [&](std::uint32_t begin, std::uint32_t end) {
-               for (std::uint32_t face = begin; face < end; ++face) {
-                 const Triangle& t = mesh.triangles[face];
-                 const Vec3d a = frame.to_unit(mesh.positions[t[0]]);
-                 const Vec3d b = frame.to_unit(mesh.positions[t[1]]);
-                 const Vec3d c = frame.to_unit(mesh.positions[t[2]]);
-                 centers[face] = (1.0 / 3) * (a + b + c);
-               }
-             });
-  return spatial_order(centers, threads);
-}
-
+// A float that is not above the value: at most 2^-24 of a number is rounded away.
 float rounded_down(double value) {
-  const auto nearest = static_cast<float>(value);
-  return nearest <= value ? nearest
-                          : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
+  constexpr double kRelative = 1.0 / (1 << 23), kLeast = 1e-30;
+  return static_cast<float>(value - (kRelative * std::abs(value) + kLeast));
 }
 
 Box<float> outer_box(const Corners& t) {
@@ -73,28 +58,68 @@ Box<double> box_of_faces(MeshView mesh) {
   return box;
 }
 
-Surface::Surface(MeshView mesh, const UnitFrame& frame, unsigned threads)
-    : given_faces_(ordered_faces(mesh, frame, threads)) {
-  std::vector<std::uint32_t> place(mesh.positions.size(), kNoIndex);
-  triangles_.resize(given_faces_.size());
-  faces_by_given_.resize(given_faces_.size());
-  for (std::uint32_t face = 0; face < face_count(); ++face) {
-    faces_by_given_[given_faces_[face]] = face;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t given = mesh.triangles[given_faces_[face]][k];
-      if (place[given] == kNoIndex) {
-        place[given] = vertex_count();
-        positions_.push_back(frame.to_unit(mesh.positions[given]));
-      }
-      triangles_[face][k] = place[given];
+SpatialOrder spatial_order_of(MeshView mesh, const UnitFrame& frame, unsigned threads) {
+  std::vector<Vec3d> centers(mesh.triangles.size());
+  for_each_index(centers.size(), threads, [&](std::uint32_t face) {
+    const Triangle& t = mesh.triangles[face];
+    const Vec3d a = frame.to_unit(mesh.positions[t[0]]);
+    const Vec3d b = frame.to_unit(mesh.positions[t[1]]);
+    const Vec3d c = frame.to_unit(mesh.positions[t[2]]);
+    centers[face] = (1.0 / 3) * (a + b + c);
+  });
+  SpatialOrder order{spatial_order(centers, threads), {}};
+  order.vertices.reserve(mesh.positions.size());
+  std::vector<bool> is_met(mesh.positions.size(), false);
+  for (const std::uint32_t face : order.faces) {
+    for (const std::uint32_t v : mesh.triangles[face]) {
+      if (is_met[v]) continue;
+      is_met[v] = true;
+      order.vertices.push_back(v);
     }
   }
-  neighbours_ = face_neighbours(triangles_, vertex_count());
+  return order;
+}
+
+Surface::Surface(MeshView mesh, const UnitFrame& frame, unsigned threads, const SpatialOrder& order)
+    : given_faces_(order.faces) {
+  place(mesh, frame, order.vertices, threads);
+  find_neighbours(mesh.connectivity, threads);
   std::vector<Box<float>> boxes(face_count());
-  for_blocks(face_count(), threads, [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t face = begin; face < end; ++face) boxes[face] = outer_box(corners(face));
-  });
+  for_each_index(face_count(), threads,
+                 [&](std::uint32_t face) { boxes[face] = outer_box(corners(face)); });
   tree_ = FaceTree(boxes);
+}
+
+void Surface::place(MeshView mesh, const UnitFrame& frame, std::span<const std::uint32_t> vertices,
+                    unsigned threads) {
+  std::vector<std::uint32_t> places(mesh.positions.size());
+  positions_.resize(vertices.size());
+  for_each_index(vertices.size(), threads, [&](std::uint32_t vertex) {
+    places[vertices[vertex]] = vertex;
+    positions_[vertex] = frame.to_unit(mesh.positions[vertices[vertex]]);
+  });
+  triangles_.resize(given_faces_.size());
+  faces_by_given_.resize(given_faces_.size());
+  for_each_index(face_count(), threads, [&](std::uint32_t face) {
+    const std::uint32_t given = given_faces_[face];
+    faces_by_given_[given] = face;
+    for (std::size_t k = 0; k < 3; ++k) triangles_[face][k] = places[mesh.triangles[given][k]];
+  });
+}
+
+void Surface::find_neighbours(const HalfEdgeMesh* connectivity, unsigned threads) {
+  if (connectivity == nullptr) {
+    neighbours_ = face_neighbours(triangles_, vertex_count());
+    return;
+  }
+  neighbours_.resize(face_count());
+  for_each_index(face_count(), threads, [&](std::uint32_t face) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const HalfEdgeId twin = connectivity->twin(HalfEdgeId(3 * given_faces_[face] + k));
+      neighbours_[face][k] =
+          twin.valid() ? faces_by_given_[HalfEdgeMesh::face(twin).value] : kNoIndex;
+    }
+  });
 }
 
 NearestFace Surface::nearest(Vec3d p, std::uint32_t hint) const {

@@ -14,6 +14,7 @@
 #include "core/base/vec3.h"
 #include "core/measure/face_tree.h"
 #include "core/measure/point_triangle.h"
+#include "core/mesh/half_edge_mesh.h"
 #include "core/mesh/indexed_mesh.h"
 
 namespace pmesh {
@@ -38,10 +39,17 @@ inline constexpr double kNoDistance = 1e-14;
 struct MeshView {
   std::span<const Vec3d> positions;
   std::span<const Triangle> triangles;
+  const HalfEdgeMesh* connectivity = nullptr;  ///< Theirs, or null, and then it is found.
 };
 
 /// Of the vertices that faces use. Precondition: there is a face.
 Box<double> box_of_faces(MeshView mesh);
+
+/// The numbers of a mesh's faces, and of the vertices that they use, along a curve through space.
+struct SpatialOrder {
+  std::vector<std::uint32_t> faces, vertices;
+};
+SpatialOrder spatial_order_of(MeshView mesh, const UnitFrame& frame, unsigned threads);
 
 struct Corners {
   Vec3d a, b, c;
@@ -51,7 +59,11 @@ class Surface {
  public:
   /// Preconditions: the mesh has a triangle, its indices are in range, its positions are finite and
   /// near the box of `frame`.
-  Surface(MeshView mesh, const UnitFrame& frame, unsigned threads);
+  Surface(MeshView mesh, const UnitFrame& frame, unsigned threads)
+      : Surface(mesh, frame, threads, spatial_order_of(mesh, frame, threads)) {}
+  /// In an order that is known: of all faces, and of the vertices that they use. The better it is
+  /// as a spatial one, the faster are queries.
+  Surface(MeshView mesh, const UnitFrame& frame, unsigned threads, const SpatialOrder& order);
 
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(triangles_.size()); }
   /// Vertices that a face uses.
@@ -85,6 +97,10 @@ class Surface {
   const FaceTree& tree() const { return tree_; }
 
  private:
+  void place(MeshView mesh, const UnitFrame& frame, std::span<const std::uint32_t> vertices,
+             unsigned threads);
+  void find_neighbours(const HalfEdgeMesh* connectivity, unsigned threads);
+
   std::vector<std::uint32_t> given_faces_, faces_by_given_;
   std::vector<Vec3d> positions_;
   std::vector<Triangle> triangles_;

@@ -53,6 +53,13 @@ class RefinableMesh {
   std::uint32_t applied_splits() const { return applied_; }
   bool is_finest() const { return applied_splits() == known_splits(); }
 
+  /// Of the last split that the LOD that stands uses: where it was, and how it moved its kept
+  /// vertex. Precondition: applied_splits() > 0.
+  const SplitSite& last_site() const { return sites_[applied_ - 1]; }
+  Vec3i last_relocation() const {
+    return relocations_.empty() ? Vec3i{} : relocations_[applied_ - 1];
+  }
+
   /// Moves to the LOD of `count` splits. Precondition: count <= known_splits().
   void set_splits(std::uint32_t count);
   void set_finest() { set_splits(known_splits()); }

@@ -1,107 +1,17 @@
-#include <filesystem>
-
-#include <gtest/gtest.h>
-
-#include "protocol/messages.h"
 #include "tests/server/descriptor_limit.h"
-#include "tests/server/running_server.h"
-#include "tests/server/sample_file.h"
+#include "tests/server/tcp_session_fixture.h"
 
 namespace pmesh {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::make_sample;
+using testing::Delivery;
+using testing::large_sample;
 using testing::RunningServer;
-using testing::SampleFile;
 using testing::TestClient;
+using testing::text;
 
-std::string text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
-
-/// What came of one want: the data, put together, and the frame that answered it.
-struct Delivery {
-  std::uint64_t begin = 0;
-  std::string bytes;
-  Frame answer;
-
-  Done done() const { return parse_done(answer.payload).value(); }
-};
-
-class TcpSessionTest : public ::testing::Test {
- protected:
-  void serve(const std::function<void(ServerOptions&)>& adjust = {}) {
-    running_ = std::make_unique<RunningServer>(adjust);
-    running_->directory().write("bunny.pmesh", bunny_.bytes);
-  }
-
-  /// Connects and exchanges hellos.
-  void connect(std::uint32_t max_frame = kMaxFramePayload, int receive_buffer_bytes = 0) {
-    client_ = std::make_unique<TestClient>(running_->server().tcp_address(), receive_buffer_bytes);
-    send(encode_hello({.max_frame = max_frame}));
-    EXPECT_EQ(next().type, FrameType::hello);
-  }
-
-  void connect_and_open() {
-    connect();
-    send(encode_open(1, {.id = "bunny", .hash = {}}));
-    EXPECT_EQ(next().type, FrameType::opened);
-  }
-
-  void send(const Bytes& frame) { client_->send(text(frame)); }
-
-  void want(std::string_view query, std::uint64_t from = 0) {
-    send(encode_want(1, {from, parse_wish(query).value()}));
-  }
-
-  /// The next frame; one of type 0 if the connection ended.
-  Frame next() {
-    const std::string header = client_->receive(kFrameHeaderBytes);
-    if (header.size() < kFrameHeaderBytes) return {};
-    ByteReader reader(as_bytes(header));
-    const std::string payload = client_->receive(reader.get<std::uint32_t>());
-    const std::string whole = header + payload;
-    FrameParser parser;
-    ByteView view = as_bytes(whole);
-    EXPECT_EQ(parser.feed(view), FrameStep::done);
-    return parser.frame();
-  }
-
-  Delivery delivery() {
-    Delivery delivery;
-    while (true) {
-      delivery.answer = next();
-      if (delivery.answer.type != FrameType::data) return delivery;
-      const Data data = parse_data(delivery.answer.payload).value();
-      if (delivery.bytes.empty()) delivery.begin = data.offset;
-      EXPECT_EQ(data.offset, delivery.begin + delivery.bytes.size());
-      delivery.bytes.append(data.bytes.begin(), data.bytes.end());
-    }
-  }
-
-  void expect_failure(std::uint16_t stream, FailureCode code) {
-    expect_failure(next(), stream, code);
-  }
-  void expect_failure(const Frame& frame, std::uint16_t stream, FailureCode code) {
-    ASSERT_EQ(frame.type, FrameType::failure);
-    EXPECT_EQ(frame.stream, stream);
-    EXPECT_EQ(parse_failure(frame.payload).value().code, code);
-  }
-  /// A failure of the whole connection, and its end.
-  void expect_end(FailureCode code) {
-    expect_failure(kConnectionStream, code);
-    EXPECT_EQ(client_->receive_all(), "");
-  }
-  void expect_alive() {
-    send(encode_empty(FrameType::ping, kConnectionStream));
-    EXPECT_EQ(next().type, FrameType::pong);
-  }
-
-  SampleFile bunny_ = make_sample();
-  std::unique_ptr<RunningServer> running_;
-  std::unique_ptr<TestClient> client_;
-};
-
-SampleFile large_sample() { return make_sample({8'000'000, 8'000'000}); }
+class TcpSessionTest : public testing::TcpSession {};
 
 TEST_F(TcpSessionTest, OpenedTellsTheCounts) {
   serve();
@@ -307,132 +217,6 @@ TEST_F(TcpSessionTest, TakesFramesByteByByte) {
   EXPECT_EQ(next().type, FrameType::hello);
   EXPECT_EQ(next().type, FrameType::opened);
   EXPECT_EQ(delivery().bytes, bunny_.text());
-}
-
-TEST_F(TcpSessionTest, HelloMustComeFirstAndOnce) {
-  serve();
-  connect();
-  send(encode_hello({}));
-  expect_end(FailureCode::protocol_error);
-  client_ = std::make_unique<TestClient>(running_->server().tcp_address());
-  send(encode_empty(FrameType::ping, 0));
-  EXPECT_EQ(next().type, FrameType::hello);
-  expect_end(FailureCode::protocol_error);
-}
-
-TEST_F(TcpSessionTest, OtherVersionsAreNotSpoken) {
-  serve();
-  client_ = std::make_unique<TestClient>(running_->server().tcp_address());
-  send(encode_hello({.version = 77}));
-  EXPECT_EQ(next().type, FrameType::hello);
-  expect_end(FailureCode::unsupported_version);
-
-  client_ = std::make_unique<TestClient>(running_->server().tcp_address());
-  const std::string longer("PMTP\x01\0\0\0\x10\0 and more", 19);
-  send(encode_frame(FrameType::hello, 0, as_bytes(longer)));
-  EXPECT_EQ(next().type, FrameType::hello);
-  expect_end(FailureCode::unsupported_version);
-}
-
-TEST_F(TcpSessionTest, WhatBreaksTheRulesEndsTheConnection) {
-  serve();
-  for (const Bytes& frame :
-       {encode_empty(FrameType::opened, 1), encode_empty(static_cast<FrameType>(99), 1),
-        encode_empty(FrameType::want, 1), encode_want(0, {}), encode_empty(FrameType::open, 1),
-        encode_open(0, {.id = "bunny", .hash = {}}), Bytes{0, 0, 0, 0, 10, 1, 0, 0},
-        Bytes{0xFF, 0xFF, 0xFF, 0xFF, 10, 0, 0, 0},
-        encode_frame(FrameType::ping, 0, as_bytes("x"))}) {
-    connect();
-    send(frame);
-    expect_end(FailureCode::protocol_error);
-  }
-}
-
-TEST_F(TcpSessionTest, HttpOnTheWrongPortIsAnsweredAndClosed) {
-  serve();
-  client_ = std::make_unique<TestClient>(running_->server().tcp_address());
-  client_->send("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
-  EXPECT_EQ(next().type, FrameType::hello);
-  expect_end(FailureCode::protocol_error);
-}
-
-TEST_F(TcpSessionTest, IdleConnectionsEnd) {
-  serve([](ServerOptions& options) { options.limits.idle_timeout = 50ms; });
-  connect_and_open();
-  expect_end(FailureCode::idle_timeout);
-}
-
-TEST_F(TcpSessionTest, APausedTransferIsIdle) {
-  bunny_ = large_sample();
-  serve([](ServerOptions& options) { options.limits.idle_timeout = 50ms; });
-  connect_and_open();
-  want("");
-  send(encode_empty(FrameType::pause, 1));
-  expect_failure(delivery().answer, 0, FailureCode::idle_timeout);
-}
-
-TEST_F(TcpSessionTest, ResetsAPeerThatDoesNotRead) {
-  bunny_ = large_sample();
-  serve([](ServerOptions& options) { options.limits.send_timeout = 50ms; });
-  connect(kMaxFramePayload, 4096);
-  send(encode_open(1, {.id = "bunny", .hash = {}}));
-  want("");
-  client_->wait_for_end();
-  EXPECT_LT(client_->receive_all().size(), bunny_.bytes.size());
-  EXPECT_TRUE(client_->was_reset());
-}
-
-TEST_F(TcpSessionTest, AFloodOfPingsIsAnsweredPingByPing) {
-  serve();
-  connect();
-  constexpr int kPings = 50'000;  // their answers exceed what may be queued
-  std::thread flood([&] {
-    for (int i = 0; i < kPings; ++i) send(encode_empty(FrameType::ping, 0));
-  });
-  for (int i = 0; i < kPings; ++i) ASSERT_EQ(next().type, FrameType::pong);
-  flood.join();
-  expect_alive();
-}
-
-TEST_F(TcpSessionTest, CutsATransferOfATruncatedFile) {
-  bunny_ = large_sample();
-  serve();
-  connect(kMaxFramePayload, 4096);
-  send(encode_open(1, {.id = "bunny", .hash = {}}));
-  want("");
-  EXPECT_EQ(next().type, FrameType::opened);
-  std::filesystem::resize_file(running_->directory() / "bunny.pmesh", 1000);
-  EXPECT_LT(client_->receive_all().size(), bunny_.bytes.size());
-}
-
-TEST_F(TcpSessionTest, DrainEndsIdleConnections) {
-  serve();
-  connect_and_open();
-  running_->server().drain();
-  expect_end(FailureCode::shutting_down);
-  client_.reset();
-  running_->join();
-}
-
-TEST_F(TcpSessionTest, DrainLetsTransfersEnd) {
-  bunny_ = large_sample();
-  serve();
-  connect_and_open();
-  want("");
-  const Frame first = next();
-  running_->server().drain();
-  EXPECT_EQ(delivery().answer.type, FrameType::done);
-  expect_end(FailureCode::shutting_down);
-  client_.reset();
-  running_->join();
-}
-
-TEST_F(TcpSessionTest, RefusesConnectionsBeyondTheLimit) {
-  serve([](ServerOptions& options) { options.max_connections = 1; });
-  connect();
-  const auto first = std::move(client_);
-  connect();
-  expect_end(FailureCode::busy);
 }
 
 }  // namespace

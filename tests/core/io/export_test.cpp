@@ -70,6 +70,20 @@ TEST(Export, SinglePrecisionGivesTheSameFloatsInBothFormats) {
   }
 }
 
+// In a row, as compilers treat such loops in their own ways.
+TEST(ExportedPositions, AreThoseOfAFile) {
+  const Lattice lattice{{0.1, 0.2, 0.3}, 0.001, 12};
+  LatticeMesh mesh;
+  for (int i = 0; i < 1000; ++i) mesh.positions.push_back({i, 2 * i, 3 * i});
+  mesh.triangles = {{0, 1, 2}};
+  const ExportedPositions exported(lattice);
+  std::vector<Vec3d> positions(mesh.positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = exported(mesh.positions[i]);
+  EXPECT_EQ(
+      parsed(MeshFormat::ply, as_text(format_mesh(MeshFormat::ply, mesh, lattice))).mesh.positions,
+      positions);
+}
+
 TEST(Export, PlyIsPinned) {
   const std::string ply = as_text(format_mesh(MeshFormat::ply, {{{1, 2, 0}}, {{0, 0, 0}}}, kUnit));
   EXPECT_EQ(ply,

@@ -21,9 +21,8 @@ struct Bounds {
 
 Bounds bounds_of(const IndexedMesh& from, const IndexedMesh& to, unsigned threads = 1) {
   const Surface source = unit_surface(from), target = unit_surface(to);
-  DistanceBound distance(source, target, kTolerance, threads, nullptr);
-  distance.sweep();
-  distance.refine();
+  DistanceBound distance(source, target, kTolerance, threads);
+  distance.find();
   return {distance.reached(), distance.bound()};
 }
 
@@ -95,6 +94,30 @@ TEST(DistanceBound, FindsAPeakInsideAFace) {
 TEST(DistanceBound, IsNothingBetweenMeshesOfOnePlane) {
   const Bounds bounds = bounds_of(shapes::grid(7, 7), shapes::grid(14, 21));
   EXPECT_LE(bounds.bound, kNoDistance);
+}
+
+// Its record names, for every face that it looks at, a bound, and faces that are that near.
+TEST(DistanceBound, RecordsWhatItProves) {
+  const IndexedMesh a = shapes::bumped(shapes::torus(40, 30), 0.1), b = shapes::torus(20, 30);
+  const Surface source = unit_surface(a), target = unit_surface(b);
+  FaceMarks marks(source.tree());
+  for (std::uint32_t face = 0; face < source.face_count(); face += 3) marks.mark(face);
+  std::vector<FaceDistance> of_source, of_target;
+  DistanceBound distance(source, target, kTolerance, 2, &marks, {&of_source, &of_target});
+  distance.find();
+  EXPECT_EQ(of_source.size(), (source.face_count() + 2) / 3);
+  for (const FaceDistance& bound : of_source) {
+    const Corners t = source.corners(bound.face);
+    EXPECT_EQ(bound.face % 3, 0u);
+    EXPECT_LE(std::sqrt(target.nearest(t.a, kNoIndex).squared), bound.distance + 1e-12);
+  }
+  const auto farthest = std::max_element(
+      of_target.begin(), of_target.end(),
+      [](const FaceDistance& x, const FaceDistance& y) { return x.distance < y.distance; });
+  EXPECT_EQ(farthest->distance, distance.bound());
+  ASSERT_TRUE(distance.farthest());
+  EXPECT_DOUBLE_EQ(std::sqrt(target.nearest(*distance.farthest(), kNoIndex).squared),
+                   distance.reached());
 }
 
 TEST(DistanceBound, IsTheSameWhateverTheThreads) {

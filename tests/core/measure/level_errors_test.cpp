@@ -2,6 +2,8 @@
 // and seed, and at most 1.25 times that.
 #include "core/measure/level_errors.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "core/io/clean.h"
@@ -38,13 +40,13 @@ std::vector<IndexedMesh> levels_of(const EncodedShape& shape, std::uint32_t coun
 }
 
 LevelErrors errors_of(const IndexedMesh& original, unsigned threads = 1) {
-  auto errors = LevelErrors::of({original.positions, original.triangles}, {.threads = threads});
-  EXPECT_TRUE(errors);
-  return std::move(*errors);
+  const MeshView view{original.positions, original.triangles};
+  return LevelErrors(view, *unit_frame(box_of_faces(view)), {.threads = threads});
 }
 
 LevelError measured(LevelErrors& errors, const IndexedMesh& lod) {
-  return errors.measure({lod.positions, lod.triangles});
+  FaceErrors nothing_known(lod.triangles.size());
+  return errors.measure({lod.positions, lod.triangles}, nothing_known);
 }
 
 void expect_promise(const std::string& name, const IndexedMesh& original, const IndexedMesh& lod,
@@ -108,9 +110,30 @@ TEST(LevelErrors, AreTheSameWhateverTheThreads) {
   }
 }
 
-TEST(LevelErrors, RefuseAMeshTooLargeToBeMeasured) {
+TEST(LevelErrors, TightenWhatIsKnown) {
+  const IndexedMesh original = shapes::icosphere(4), lod = shapes::icosphere(2);
+  LevelErrors errors = errors_of(original);
+  FaceErrors known(lod.triangles.size());
+  const double max_error = errors.measure({lod.positions, lod.triangles}, known).max_error;
+  for (const std::vector<double>& bounds : {known.to_original, known.from_original}) {
+    EXPECT_LE(*std::max_element(bounds.begin(), bounds.end()), max_error);
+  }
+  EXPECT_LT(0, *std::max_element(known.from_original.begin(), known.from_original.end()));
+}
+
+TEST(LevelErrors, BelieveWhatIsKnown) {
+  const IndexedMesh original = shapes::icosphere(4), lod = shapes::icosphere(2);
+  LevelErrors errors = errors_of(original);
+  const double far = measured(errors, lod).max_error * 1.1;  // within the tolerance
+  FaceErrors known(lod.triangles.size());
+  known.to_original.assign(lod.triangles.size(), far);
+  known.from_original.assign(lod.triangles.size(), far);
+  EXPECT_NEAR(errors.measure({lod.positions, lod.triangles}, known).max_error, far, 1e-9);
+}
+
+TEST(LevelErrors, HaveNoFrameForAMeshTooLargeToBeMeasured) {
   const IndexedMesh huge{{{-1.7e308, 0, 0}, {1.7e308, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-  EXPECT_FALSE(LevelErrors::of({huge.positions, huge.triangles}, {}));
+  EXPECT_FALSE(unit_frame(box_of_faces({huge.positions, huge.triangles})));
 }
 
 TEST(LevelErrors, KeepTheirPromiseForARealMesh) {

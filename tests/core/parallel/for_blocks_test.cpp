@@ -17,5 +17,23 @@ TEST(ForBlocks, VisitsEveryIndexOnce) {
   }
 }
 
+TEST(ForBlocks, ThrowsWhatABlockThrows) {
+  for (const unsigned threads : {1u, 4u}) {
+    const auto work = [](std::uint32_t begin, std::uint32_t) {
+      if (begin >= 40'960) throw std::bad_alloc();
+    };
+    EXPECT_THROW(for_blocks(100'001, threads, work), std::bad_alloc);
+  }
+}
+
+TEST(RunBoth, RunsBoth) {
+  for (const unsigned threads : {1u, 2u}) {
+    int first = 0, second = 0;
+    run_both(
+        threads, [&] { first = 1; }, [&] { second = 2; });
+    EXPECT_EQ(first + second, 3);
+  }
+}
+
 }  // namespace
 }  // namespace pmesh
