@@ -10,7 +10,7 @@ namespace pmesh {
 namespace {
 
 // Of one face: what is tried at first, and the bounded effort that ends every refinement.
-constexpr std::uint32_t kFewCuts = 24, kManyCuts = 100'000;
+constexpr std::uint32_t kFewCuts = 24, kManyCuts = 20'000;
 
 using Below = FaceMarks::Below;
 

@@ -21,7 +21,7 @@ constexpr double kRounding = 4e-15;
 
 std::uint32_t samples_for(MeshView original, const LevelErrorOptions& options) {
   if (options.samples != 0) return options.samples;
-  return original.triangles.size() < 200'000 ? 1 << 17 : 1 << 14;
+  return original.triangles.size() < 200'000 ? 1 << 17 : 1 << 13;
 }
 
 // More samples where the bounds are large: there errors are rare and count much. By face of `lod`.

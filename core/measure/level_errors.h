@@ -30,7 +30,7 @@ struct LevelError {
 };
 
 struct LevelErrorOptions {
-  /// A direction and level, for rms_error; 0: 131,072, or 16,384 for 200,000 faces and more.
+  /// A direction and level, for rms_error; 0: 131,072, or 8,192 for 200,000 faces and more.
   std::uint32_t samples = 0;
   unsigned threads = 1;  ///< The errors do not depend on it.
 };

@@ -8,10 +8,11 @@
 
 namespace pmesh {
 
-/// No point of `faces` is farther than this from the nearest of `others` and `more`. Sharp, to
-/// within a factor of 1.5 or so, if these lie like tiles below and above the faces. Infinite if
-/// there is none of them.
+/// No point of `faces` is farther than this from the nearest of `others` and `more`, or than
+/// `limit`, which is known to bound it. Sharp, to within a factor of 1.5 or so, if these lie like
+/// tiles below and above the faces, and there are few of them, or `effort` is large: time grows
+/// with it.
 double patch_distance(std::span<const Corners> faces, std::span<const Corners> others,
-                      std::span<const Corners> more);
+                      std::span<const Corners> more, double limit, int effort = 1);
 
 }  // namespace pmesh

@@ -31,7 +31,7 @@ struct Sums {
 template <class VisitPoints>
 SurfaceDistance distance_over(std::uint32_t count, const Surface& target, unsigned threads,
                               std::vector<std::uint32_t>* near, const VisitPoints& visit) {
-  constexpr std::uint32_t kBlock = 1 << 12;
+  constexpr std::uint32_t kBlock = 1 << 10;
   std::vector<Sums> blocks((count + kBlock - 1) / kBlock);
   for_blocks<kBlock>(count, threads, [&](std::uint32_t begin, std::uint32_t end) {
     std::uint32_t last = kNoIndex, i = begin;

@@ -5,56 +5,17 @@
 #include <span>
 
 #include "core/measure/patch_distance.h"
+#include "core/precompute/displacements.h"
 
 namespace pmesh {
-namespace {
-
-bool is_before(Vec3i a, Vec3i b) {
-  if (a.x != b.x) return a.x < b.x;
-  return a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
-// How far each vertex of an original is from where its lattice point is exported.
-class Displacements {
- public:
-  Displacements(const IndexedMesh& original, const Lattice& lattice,
-                const ExportedPositions& exported) {
-    of_points_.reserve(original.positions.size());
-    for (const Vec3d p : original.positions) {
-      const Vec3i point = lattice.quantise(p);
-      of_points_.push_back({point, length(exported(point) - p)});
-    }
-    std::sort(of_points_.begin(), of_points_.end());
-  }
-
-  // The largest of those that are at `point`.
-  double at(Vec3i point) const {
-    const auto after =
-        std::upper_bound(of_points_.begin(), of_points_.end(), point,
-                         [](Vec3i p, const OfPoint& of) { return is_before(p, of.point); });
-    return std::prev(after)->length;
-  }
-
- private:
-  struct OfPoint {
-    Vec3i point;
-    double length;
-    friend bool operator<(const OfPoint& a, const OfPoint& b) {
-      return a.point == b.point ? a.length < b.length : is_before(a.point, b.point);
-    }
-  };
-  std::vector<OfPoint> of_points_;
-};
-
-}  // namespace
-
 ErrorWalk::ErrorWalk(RefinableMesh& mesh, const Lattice& lattice, const IndexedMesh& original,
                      const UnitFrame& frame)
     : mesh_(mesh), positions_(lattice), frame_(frame) {
   mesh_.set_finest();
   errors_ = FaceErrors(mesh_.face_count());
-  const Displacements displacements(original, lattice, positions_);
+  const Displacements displacements(original, lattice);
   std::vector<double> of_vertices;
+  of_vertices.reserve(mesh_.positions().size());
   for (const Vec3i point : mesh_.positions()) {
     of_vertices.push_back(frame.scale * displacements.at(point));
   }
@@ -128,7 +89,7 @@ double ErrorWalk::gap_of(VertexId removed, VertexId kept) {
   // The linear maps of the faces onto their images move no point farther than the vertices.
   const double moved =
       std::max(length(position(removed) - merged_), length(position(kept) - merged_));
-  return std::min(moved, odd_gap(removed, kept));
+  return odd_gap(removed, kept, moved);
 }
 
 std::optional<double> ErrorWalk::plain_gap(VertexId removed, VertexId kept) {
@@ -159,7 +120,7 @@ void ErrorWalk::gather_around() {
 }
 
 // The faces beyond the link belong to both surfaces: folded faces may be above or below them.
-double ErrorWalk::odd_gap(VertexId removed, VertexId kept) {
+double ErrorWalk::odd_gap(VertexId removed, VertexId kept, double limit) {
   std::vector<Corners> before, after, around;
   for (const std::uint32_t face : star_) {
     const Corners t = corners(face);
@@ -173,7 +134,17 @@ double ErrorWalk::odd_gap(VertexId removed, VertexId kept) {
     if (!is_deleted) after.push_back({moved(0, t.a), moved(1, t.b), moved(2, t.c)});
   }
   for (const std::uint32_t face : around_) around.push_back(corners(face));
-  return std::max(patch_distance(before, after, around), patch_distance(after, before, around));
+  const auto found = [&](int effort) {
+    return std::max(patch_distance(before, after, around, limit, effort),
+                    patch_distance(after, before, around, limit, effort));
+  };
+  // A bound that would spoil those of all coarser faces, and may be much too large.
+  const auto is_large = [&](double gap) {
+    return gap > 4 * errors_.to_original[star_[0]] && gap > limit / 4;
+  };
+  constexpr int kMoreEffort = 6;
+  const double gap = found(1);
+  return is_large(gap) ? found(kMoreEffort) : gap;
 }
 
 // The star's bounds become those of what has replaced it.

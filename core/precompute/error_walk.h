@@ -38,7 +38,7 @@ class ErrorWalk {
   void gather_around();
   double gap_of(VertexId removed, VertexId kept);
   std::optional<double> plain_gap(VertexId removed, VertexId kept);
-  double odd_gap(VertexId removed, VertexId kept);
+  double odd_gap(VertexId removed, VertexId kept, double limit);
   void exchange(double gap);
   Vec3d unit(Vec3i point) const { return frame_.to_unit(positions_(point)); }
   Vec3d position(VertexId v) const { return unit(mesh_.positions()[v.value]); }

@@ -1,6 +1,7 @@
 #include "core/measure/collapse_gap.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,8 @@
 
 namespace pmesh {
 namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 std::vector<Vec3d> regular_link(int corners, double z = 0) {
   std::vector<Vec3d> link;
@@ -149,8 +152,8 @@ TEST(PatchDistance, BoundsTheDistanceOfAnyFans) {
       link.push_back({unit(random), unit(random), 0.2 * unit(random)});
     const auto before = fan({unit(random), unit(random), 0}, link, 0, link.size());
     const auto after = fan(link[0], link, 1, link.size() - 1);
-    const double bound =
-        std::max(patch_distance(before, after, {}), patch_distance(after, before, {}));
+    const double bound = std::max(patch_distance(before, after, {}, kNoLimit),
+                                  patch_distance(after, before, {}, kNoLimit));
     EXPECT_GE(bound, sampled(before, after) - 1e-12);
   }
 }
@@ -158,8 +161,8 @@ TEST(PatchDistance, BoundsTheDistanceOfAnyFans) {
 TEST(PatchDistance, IsSharpOverFlatTiles) {
   const std::vector<Vec3d> link = regular_link(6);
   const auto after = fan(link[0], link, 1, link.size() - 1);
-  EXPECT_NEAR(patch_distance(fan({0, 0, 0}, link, 0, 6), after, {}), 0, 1e-15);
-  const double peak = patch_distance(fan({0, 0, 0.5}, link, 0, 6), after, {});
+  EXPECT_NEAR(patch_distance(fan({0, 0, 0}, link, 0, 6), after, {}, kNoLimit), 0, 1e-15);
+  const double peak = patch_distance(fan({0, 0, 0.5}, link, 0, 6), after, {}, kNoLimit);
   EXPECT_GE(peak, 0.5);
   EXPECT_LE(peak, 0.75);
 }
@@ -170,9 +173,9 @@ TEST(PatchDistance, CountsTheFacesAround) {
   const std::vector<Corners> inside = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                                        {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}}};
   const std::vector<Corners> around = {{{0, 0, 0}, {1, -1, 0}, {2, 0, 0}}};
-  EXPECT_NEAR(patch_distance(sliver, inside, around), 0, 1e-15);
-  EXPECT_LE(patch_distance(sliver, inside, {}), 0.25);
-  EXPECT_TRUE(std::isinf(patch_distance(sliver, {}, {})));
+  EXPECT_NEAR(patch_distance(sliver, inside, around, kNoLimit), 0, 1e-15);
+  EXPECT_LE(patch_distance(sliver, inside, {}, kNoLimit), 0.25);
+  EXPECT_EQ(patch_distance(sliver, {}, {}, 7), 7);
 }
 
 }  // namespace
