@@ -83,7 +83,7 @@ SpatialOrder spatial_order_of(MeshView mesh, const UnitFrame& frame, unsigned th
 Surface::Surface(MeshView mesh, const UnitFrame& frame, unsigned threads, const SpatialOrder& order)
     : given_faces_(order.faces) {
   place(mesh, frame, order.vertices, threads);
-  find_neighbours(mesh.connectivity, threads);
+  place_neighbours(mesh, threads);
   std::vector<Box<float>> boxes(face_count());
   for_each_index(face_count(), threads,
                  [&](std::uint32_t face) { boxes[face] = outer_box(corners(face)); });
@@ -107,17 +107,16 @@ void Surface::place(MeshView mesh, const UnitFrame& frame, std::span<const std::
   });
 }
 
-void Surface::find_neighbours(const HalfEdgeMesh* connectivity, unsigned threads) {
-  if (connectivity == nullptr) {
+void Surface::place_neighbours(MeshView mesh, unsigned threads) {
+  if (mesh.neighbours.empty()) {
     neighbours_ = face_neighbours(triangles_, vertex_count());
     return;
   }
   neighbours_.resize(face_count());
   for_each_index(face_count(), threads, [&](std::uint32_t face) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const HalfEdgeId twin = connectivity->twin(HalfEdgeId(3 * given_faces_[face] + k));
-      neighbours_[face][k] =
-          twin.valid() ? faces_by_given_[HalfEdgeMesh::face(twin).value] : kNoIndex;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t beyond = mesh.neighbours[given_faces_[face]][k];
+      neighbours_[face][k] = beyond == kNoIndex ? kNoIndex : faces_by_given_[beyond];
     }
   });
 }

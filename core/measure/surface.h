@@ -14,7 +14,6 @@
 #include "core/base/vec3.h"
 #include "core/measure/face_tree.h"
 #include "core/measure/point_triangle.h"
-#include "core/mesh/half_edge_mesh.h"
 #include "core/mesh/indexed_mesh.h"
 
 namespace pmesh {
@@ -39,7 +38,8 @@ inline constexpr double kNoDistance = 1e-14;
 struct MeshView {
   std::span<const Vec3d> positions;
   std::span<const Triangle> triangles;
-  const HalfEdgeMesh* connectivity = nullptr;  ///< Theirs, or null, and then it is found.
+  /// By triangle, the ones beyond edges ab, bc and ca, or kNoIndex; or empty: they are found.
+  std::span<const std::array<std::uint32_t, 3>> neighbours = {};
 };
 
 /// Of the vertices that faces use. Precondition: there is a face.
@@ -99,7 +99,7 @@ class Surface {
  private:
   void place(MeshView mesh, const UnitFrame& frame, std::span<const std::uint32_t> vertices,
              unsigned threads);
-  void find_neighbours(const HalfEdgeMesh* connectivity, unsigned threads);
+  void place_neighbours(MeshView mesh, unsigned threads);
 
   std::vector<std::uint32_t> given_faces_, faces_by_given_;
   std::vector<Vec3d> positions_;

@@ -1,6 +1,7 @@
 #include "core/precompute/error_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <optional>
 
@@ -15,13 +16,27 @@ namespace pmesh {
 namespace {
 
 // The LOD that stands, with positions as exported.
-IndexedMesh exported(const RefinableMesh& mesh, const Lattice& lattice, unsigned threads) {
+struct Level {
+  IndexedMesh mesh;
+  std::vector<std::array<std::uint32_t, 3>> neighbours;
+
+  MeshView view() const { return {mesh.positions, mesh.triangles, neighbours}; }
+};
+
+Level exported(const RefinableMesh& mesh, const Lattice& lattice, unsigned threads) {
   const ExportedPositions positions(lattice);
   LatticeMesh lod = mesh.snapshot();
-  IndexedMesh result{std::vector<Vec3d>(lod.positions.size()), std::move(lod.triangles)};
+  Level level{{std::vector<Vec3d>(lod.positions.size()), std::move(lod.triangles)},
+              std::vector<std::array<std::uint32_t, 3>>(mesh.face_count())};
   for_each_index(lod.positions.size(), threads,
-                 [&](std::uint32_t v) { result.positions[v] = positions(lod.positions[v]); });
-  return result;
+                 [&](std::uint32_t v) { level.mesh.positions[v] = positions(lod.positions[v]); });
+  for_each_index(mesh.face_count(), threads, [&](std::uint32_t face) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const HalfEdgeId twin = mesh.connectivity().twin(HalfEdgeId(3 * face + k));
+      level.neighbours[face][k] = twin.valid() ? HalfEdgeMesh::face(twin).value : kNoIndex;
+    }
+  });
+  return level;
 }
 
 }  // namespace
@@ -53,14 +68,22 @@ Status write_error_index(Bytes& file, const IndexedMesh& original, unsigned thre
   if (!decoded) return decoded;
 
   FileIndex index = decoder.index();
+  const auto plan = [&](std::size_t c) {
+    walk->plan_to(
+        static_cast<std::uint32_t>(index.chunks[c].vertices - index.header.base_vertices));
+  };
+  if (!index.chunks.empty()) plan(index.chunks.size() - 1);
   for (std::size_t c = index.chunks.size(); c-- > 0;) {
-    ChunkRow& row = index.chunks[c];
-    walk->coarsen_to(static_cast<std::uint32_t>(row.vertices - index.header.base_vertices));
-    const IndexedMesh lod = exported(decoder.mesh(), index.header.lattice, threads);
-    const LevelError error = errors->measure(
-        {lod.positions, lod.triangles, &decoder.mesh().connectivity()}, walk->errors());
-    row.max_error = error.max_error;
-    row.rms_error = error.rms_error;
+    walk->follow();
+    const Level level = exported(decoder.mesh(), index.header.lattice, threads);
+    LevelError error;
+    run_both(
+        threads, [&] { error = errors->measure(level.view(), walk->errors()); },
+        [&] {
+          if (c > 0) plan(c - 1);
+        });
+    index.chunks[c].max_error = error.max_error;
+    index.chunks[c].rms_error = error.rms_error;
     progress(1 - static_cast<double>(c) / static_cast<double>(index.chunks.size()));
   }
   index.header.errors_measured = true;

@@ -26,8 +26,19 @@ ErrorWalk::ErrorWalk(RefinableMesh& mesh, const Lattice& lattice, const IndexedM
   }
 }
 
-void ErrorWalk::coarsen_to(std::uint32_t splits) {
-  while (mesh_.applied_splits() > splits) coarsen_once();
+void ErrorWalk::plan_to(std::uint32_t splits) {
+  while (mesh_.applied_splits() > splits) plan_collapse();
+}
+
+void ErrorWalk::follow() {
+  for (std::size_t i = 0; i < exchanges_.size(); ++i) {
+    const std::size_t end =
+        i + 1 < exchanges_.size() ? exchanges_[i + 1].star_begin : exchanged_.size();
+    exchange(exchanges_[i], static_cast<std::uint32_t>(end));
+  }
+  errors_.resize(mesh_.face_count());
+  exchanges_.clear();
+  exchanged_.clear();
 }
 
 Corners ErrorWalk::corners(std::uint32_t face) const {
@@ -35,7 +46,7 @@ Corners ErrorWalk::corners(std::uint32_t face) const {
   return {position(of_face[0]), position(of_face[1]), position(of_face[2])};
 }
 
-void ErrorWalk::coarsen_once() {
+void ErrorWalk::plan_collapse() {
   const VertexId removed(mesh_.vertex_count() - 1);
   // The split's last face is (removed, right, kept), or, without one, (removed, kept, left).
   const SplitSite site = mesh_.last_site();
@@ -46,7 +57,12 @@ void ErrorWalk::coarsen_once() {
   mesh_.set_splits(mesh_.applied_splits() - 1);
   // If nothing but an edge is left of the star, its other face has what was charged to the star.
   if (star_.size() == 1) around_.push_back(HalfEdgeMesh::face(site.half_edge).value);
-  exchange(gap);
+
+  const auto begin = static_cast<std::uint32_t>(exchanged_.size());
+  const auto around_begin = static_cast<std::uint32_t>(begin + star_.size());
+  exchanges_.push_back({gap, mesh_.face_count(), begin, around_begin});
+  exchanged_.insert(exchanged_.end(), star_.begin(), star_.end());
+  exchanged_.insert(exchanged_.end(), around_.begin(), around_.end());
 }
 
 void ErrorWalk::gather(VertexId removed, VertexId kept) {
@@ -138,31 +154,31 @@ double ErrorWalk::odd_gap(VertexId removed, VertexId kept, double limit) {
     return std::max(patch_distance(before, after, around, limit, effort),
                     patch_distance(after, before, around, limit, effort));
   };
-  // A bound that would spoil those of all coarser faces, and may be much too large.
-  const auto is_large = [&](double gap) {
-    return gap > 4 * errors_.to_original[star_[0]] && gap > limit / 4;
-  };
+  // A bound that may be much too large: many faces can lie in many ways.
+  const auto is_large = [&](double gap) { return star_.size() > 8 && gap > limit / 3; };
   constexpr int kMoreEffort = 6;
   const double gap = found(1);
   return is_large(gap) ? found(kMoreEffort) : gap;
 }
 
 // The star's bounds become those of what has replaced it.
-void ErrorWalk::exchange(double gap) {
+void ErrorWalk::exchange(const Exchange& exchange, std::uint32_t end) {
+  const std::span<const std::uint32_t> all(exchanged_);
+  const auto star = all.subspan(exchange.star_begin, exchange.around_begin - exchange.star_begin);
+  const auto around = all.subspan(exchange.around_begin, end - exchange.around_begin);
   double to = 0, from = 0;
-  for (const std::uint32_t face : star_) {
+  for (const std::uint32_t face : star) {
     to = std::max(to, errors_.to_original[face]);
     from = std::max(from, errors_.from_original[face]);
   }
-  errors_.resize(mesh_.face_count());
-  for (const std::uint32_t face : around_) {
+  for (const std::uint32_t face : around) {
     to = std::max(to, errors_.to_original[face]);
-    errors_.from_original[face] = std::max(errors_.from_original[face], from + gap);
+    errors_.from_original[face] = std::max(errors_.from_original[face], from + exchange.gap);
   }
-  for (const std::uint32_t face : star_) {
-    if (face >= mesh_.face_count()) continue;
-    errors_.to_original[face] = to + gap;
-    errors_.from_original[face] = from + gap;
+  for (const std::uint32_t face : star) {
+    if (face >= exchange.faces_after) continue;
+    errors_.to_original[face] = to + exchange.gap;
+    errors_.from_original[face] = from + exchange.gap;
   }
 }
 

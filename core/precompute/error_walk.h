@@ -17,7 +17,9 @@
 
 namespace pmesh {
 
-/// Threads: one at a time.
+/// Coarsening has two halves, so that the first may run while a level is measured.
+///
+/// Threads: one at a time, but for plan_to(), which may run while errors() is used.
 class ErrorWalk {
  public:
   /// Begins at the finest LOD of `mesh`, whose vertices are those of `original` on its lattice.
@@ -25,21 +27,31 @@ class ErrorWalk {
   ErrorWalk(RefinableMesh& mesh, const Lattice& lattice, const IndexedMesh& original,
             const UnitFrame& frame);
 
-  /// Precondition: `splits` is not above mesh.applied_splits().
-  void coarsen_to(std::uint32_t splits);
+  /// Coarsens the mesh and takes note of what each collapse exchanges. Precondition: `splits` is
+  /// not above mesh.applied_splits().
+  void plan_to(std::uint32_t splits);
+  /// Brings errors() up to the LOD that stands.
+  void follow();
 
-  /// Of the LOD that stands; bounds may be made tighter.
+  /// Of the LOD that stood at the last follow(); bounds may be made tighter.
   FaceErrors& errors() { return errors_; }
 
  private:
-  void coarsen_once();
+  // A collapse. Its faces are those in `exchanged_` from one entry's begin to the next one's.
+  struct Exchange {
+    double gap;
+    std::uint32_t faces_after;  // of the mesh
+    std::uint32_t star_begin, around_begin;
+  };
+
+  void plan_collapse();
   void gather(VertexId removed, VertexId kept);
   bool gather_star(VertexId center, VertexId first);
   void gather_around();
   double gap_of(VertexId removed, VertexId kept);
   std::optional<double> plain_gap(VertexId removed, VertexId kept);
   double odd_gap(VertexId removed, VertexId kept, double limit);
-  void exchange(double gap);
+  void exchange(const Exchange& exchange, std::uint32_t end);
   Vec3d unit(Vec3i point) const { return frame_.to_unit(positions_(point)); }
   Vec3d position(VertexId v) const { return unit(mesh_.positions()[v.value]); }
   Corners corners(std::uint32_t face) const;
@@ -48,9 +60,13 @@ class ErrorWalk {
   ExportedPositions positions_;
   UnitFrame frame_;
   FaceErrors errors_;
-  CollapseGap gap_;
 
-  // Of the collapse that is undone to coarsen: the faces that it changes, and the link.
+  // Planned, not yet followed.
+  std::vector<Exchange> exchanges_;
+  std::vector<std::uint32_t> exchanged_;
+
+  // Of the collapse that is planned: the faces that it changes, and the link.
+  CollapseGap gap_;
   std::vector<std::uint32_t> star_;
   std::vector<VertexId> link_, removed_link_;
   std::vector<Vec3d> link_positions_;

@@ -25,7 +25,10 @@ class Walk {
   }
 
   std::uint32_t splits() { return decoder_.mesh().applied_splits(); }
-  void coarsen_to(std::uint32_t splits) { walk_->coarsen_to(splits); }
+  void coarsen_to(std::uint32_t splits) {
+    walk_->plan_to(splits);
+    walk_->follow();
+  }
   FaceErrors& errors() { return walk_->errors(); }
   double largest() {
     const std::vector<double>& bounds = errors().to_original;
