@@ -11,7 +11,7 @@ constexpr std::size_t kLanes = PlacedRing::kBlock;
 // A sum for each lane and then their total: compilers do not change the order of additions.
 PMESH_WIDE_VECTORS
 void sum_faces(const PlacedRing& ring, FaceSums& sums) {
-  typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
+  using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
   Lanes xx{}, xy{}, xz{}, yy{}, yz{}, zz{}, nx{}, ny{}, nz{}, sx{}, sy{}, sz{};
   for (std::size_t i = 0; i < ring.faces; i += kLanes) {
     Lanes ax, ay, az, bx, by, bz;
