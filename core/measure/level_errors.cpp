@@ -1,6 +1,7 @@
 #include "core/measure/level_errors.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -41,10 +42,10 @@ std::vector<double> sampling_density(const Surface& lod, const std::vector<doubl
 
 // Around all points within `distance` of a triangle.
 Box<double> box_around(const Corners& t, double distance) {
-  const auto low = [&](double a, double b, double c) { return std::min({a, b, c}) - distance; };
-  const auto high = [&](double a, double b, double c) { return std::max({a, b, c}) + distance; };
-  return {{low(t.a.x, t.b.x, t.c.x), low(t.a.y, t.b.y, t.c.y), low(t.a.z, t.b.z, t.c.z)},
-          {high(t.a.x, t.b.x, t.c.x), high(t.a.y, t.b.y, t.c.y), high(t.a.z, t.b.z, t.c.z)}};
+  const std::array<Vec3d, 3> corners = {t.a, t.b, t.c};
+  const Box<double> box = bounding_box(std::span<const Vec3d>(corners));
+  const Vec3d margin{distance, distance, distance};
+  return {box.low - margin, box.high + margin};
 }
 
 }  // namespace

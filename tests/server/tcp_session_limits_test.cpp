@@ -6,11 +6,7 @@ namespace pmesh {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::Delivery;
-using testing::large_sample;
-using testing::RunningServer;
-using testing::TestClient;
-using testing::text;
+using namespace testing;
 
 class TcpSessionLimitsTest : public testing::TcpSession {};
 

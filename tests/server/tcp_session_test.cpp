@@ -5,11 +5,7 @@ namespace pmesh {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::Delivery;
-using testing::large_sample;
-using testing::RunningServer;
-using testing::TestClient;
-using testing::text;
+using namespace testing;
 
 class TcpSessionTest : public testing::TcpSession {};
 
