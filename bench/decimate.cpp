@@ -55,13 +55,12 @@ AnyMetric parse_metric(std::string_view text) {
   return *metric;
 }
 
-Decimation decimate_by(const AnyMetric& metric, HalfEdgeMesh connectivity,
-                       std::vector<Vec3d> positions,
-                       std::atomic<DecimationPhase>* phase = nullptr) {
-  DecimateOptions options;
-  options.metric = metric;
-  options.phase = phase;
-  return decimate(std::move(connectivity), std::move(positions), options);
+// How to decimate: metric, schedule, threads.
+using Method = DecimateOptions;
+
+Decimation decimate_by(const Method& method, HalfEdgeMesh connectivity,
+                       std::vector<Vec3d> positions) {
+  return decimate(std::move(connectivity), std::move(positions), method);
 }
 
 HalfEdgeMesh half_edges(const IndexedMesh& mesh) {
@@ -85,10 +84,19 @@ double seconds_of(const Work& work) {
   return cpu_seconds() - start;
 }
 
+template <class Work>
+double wall_seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 struct Times {
-  double build = DBL_MAX;     // half-edges from triangles
-  double decimate = DBL_MAX;  // from half-edges to the base, the whole log
-  double peer = DBL_MAX;      // meshoptimizer to 1%, one level of detail
+  double build = DBL_MAX;        // half-edges from triangles
+  double decimate = DBL_MAX;     // from half-edges to the base, the whole log
+  double peer = DBL_MAX;         // meshoptimizer to 1%, one level of detail
+  double wall = DBL_MAX;         // decimate again, by the clock on the wall
+  double wall_of_two = DBL_MAX;  // with two threads
   std::uint32_t base_faces = 0;
 };
 
@@ -111,26 +119,43 @@ double time_peer(const IndexedMesh& mesh) {
 double time_peer(const IndexedMesh&) { return DBL_MAX; }
 #endif
 
+void fail_unless_same(const CollapseLog& a, const CollapseLog& b) {
+  const auto same = [](const HalfEdgeCollapse& c, const HalfEdgeCollapse& d) {
+    return c.removed == d.removed && c.kept == d.kept;
+  };
+  if (a.batch_ends != b.batch_ends || !std::ranges::equal(a.collapses, b.collapses, same)) {
+    fail("two threads made another log than one");
+  }
+}
+
 // The best of some rounds in turn.
-Times measure_times(const IndexedMesh& mesh, const AnyMetric& metric) {
+Times measure_times(const IndexedMesh& mesh, Method method) {
   Times best;
+  const auto improve = [](double& time, double seconds) { time = std::min(time, seconds); };
   for (int round = 0; round < kRounds; ++round) {
-    best.peer = std::min(best.peer, time_peer(mesh));
+    improve(best.peer, time_peer(mesh));
     HalfEdgeMesh connectivity;
-    best.build = std::min(best.build, seconds_of([&] { connectivity = half_edges(mesh); }));
+    improve(best.build, seconds_of([&] { connectivity = half_edges(mesh); }));
+    std::optional<Decimation> one, two;
+    HalfEdgeMesh copy = connectivity;
     std::vector<Vec3d> positions = mesh.positions;
-    std::optional<Decimation> result;
-    const double seconds = seconds_of(
-        [&] { result = decimate_by(metric, std::move(connectivity), std::move(positions)); });
-    best.decimate = std::min(best.decimate, seconds);
-    best.base_faces = result->report.faces;
+    const auto run = [&](unsigned threads) {
+      method.threads = threads;
+      return decimate_by(method, std::move(copy), std::move(positions));
+    };
+    improve(best.wall,
+            wall_seconds_of([&] { improve(best.decimate, seconds_of([&] { one = run(1); })); }));
+    copy = std::move(connectivity);
+    positions = mesh.positions;
+    improve(best.wall_of_two, wall_seconds_of([&] { two = run(2); }));
+    fail_unless_same(one->log, two->log);
+    best.base_faces = one->report.faces;
   }
   return best;
 }
 
 // The share of samples that found decimation in each phase.
-std::array<double, kDecimationPhases> measure_phases(const IndexedMesh& mesh,
-                                                     const AnyMetric& metric) {
+std::array<double, kDecimationPhases> measure_phases(const IndexedMesh& mesh, Method method) {
   std::array<double, kDecimationPhases> shares{};
   HalfEdgeMesh connectivity = half_edges(mesh);
   std::atomic<DecimationPhase> phase = DecimationPhase::evaluate_all;
@@ -143,7 +168,8 @@ std::array<double, kDecimationPhases> measure_phases(const IndexedMesh& mesh,
     }
     for (double& share : shares) share /= samples;
   });
-  static_cast<void>(decimate_by(metric, std::move(connectivity), mesh.positions, &phase));
+  method.phase = &phase;
+  static_cast<void>(decimate_by(method, std::move(connectivity), mesh.positions));
   sampler.request_stop();
   sampler.join();
   return shares;
@@ -154,7 +180,7 @@ struct Memory {
   double above = 0;  // peak above half-edge mesh and positions, bytes a face
 };
 
-Memory measure_memory_here(const std::string& path, const AnyMetric& metric) {
+Memory measure_memory_here(const std::string& path, const Method& method) {
   IndexedMesh mesh = load(path);
   const double faces = static_cast<double>(mesh.triangles.size());
   const std::uint64_t before = resident_bytes();
@@ -163,21 +189,21 @@ Memory measure_memory_here(const std::string& path, const AnyMetric& metric) {
   mesh.triangles = {};
   const std::uint64_t baseline = resident_bytes();
   reset_peak();
-  static_cast<void>(decimate_by(metric, std::move(connectivity), std::move(mesh.positions)));
+  static_cast<void>(decimate_by(method, std::move(connectivity), std::move(mesh.positions)));
   const std::uint64_t peak = peak_resident_bytes();
   return {static_cast<double>(with_mesh - before) / faces,
           static_cast<double>(peak - baseline) / faces};
 }
 
 // In a process of its own, so that memory left over from other measurements does not hide any.
-Memory measure_memory(const std::string& path, const AnyMetric& metric) {
+Memory measure_memory(const std::string& path, const Method& method) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) fail("no pipe");
   const pid_t child = fork();
   if (child < 0) fail("no process");
   Memory memory;
   if (child == 0) {
-    memory = measure_memory_here(path, metric);
+    memory = measure_memory_here(path, method);
     _exit(write(ends[1], &memory, sizeof memory) == sizeof memory ? 0 : 1);
   }
   close(ends[1]);
@@ -188,14 +214,15 @@ Memory measure_memory(const std::string& path, const AnyMetric& metric) {
 }
 
 void print_header() {
-  std::printf("| %-20s | %-20s | %8s | %5s | %7s | %7s | %7s | %5s | %6s | %6s |", "mesh", "metric",
-              "faces", "base", "pmesh", "+ build", "meshopt", "ratio", "mesh B", "peak B");
-  for (const char* phase : {"all", "heap", "gather", "cost", "legal", "commit"}) {
+  std::printf("| %-20s | %-20s | %8s | %5s | %7s | %7s | %7s | %5s | %5s | %6s | %6s |", "mesh",
+              "metric", "faces", "base", "pmesh", "+ build", "meshopt", "ratio", "two", "mesh B",
+              "peak B");
+  for (const char* phase : {"all", "choose", "gather", "cost", "legal", "commit"}) {
     std::printf(" %6s |", phase);
   }
   std::printf(
       "\n|----------------------|----------------------|---------:|------:|--------:|--------:|----"
-      "----:|------:|"
+      "----:|------:|------:|"
       "-------:|-------:|-------:|-------:|-------:|-------:|-------:|-------:|\n");
 }
 
@@ -212,6 +239,7 @@ void print_row(const std::string& path, const std::string& metric, std::size_t f
   } else {
     std::printf(" %7s | %5s |", "-", "-");
   }
+  std::printf(" %5.2f |", times.wall / times.wall_of_two);
   std::printf(" %6.1f | %6.1f |", memory.mesh, memory.above);
   for (const double share : phases) std::printf(" %5.1f%% |", 100 * share);
   std::printf("\n");
@@ -223,10 +251,14 @@ void print_row(const std::string& path, const std::string& metric, std::size_t f
 
 int main(int argc, char** argv) {
   using namespace pmesh::bench;
-  constexpr const char* kUsage = "usage: bench_decimate [--metric NAME[:PARAMETERS]]... MESH...";
+  constexpr const char* kUsage =
+      "usage: bench_decimate [--exact] [--metric NAME[:PARAMETERS]]... MESH...";
   std::vector<std::string> metrics, meshes;
+  Method method;
   for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) != "--metric") {
+    if (std::string_view(argv[i]) == "--exact") {
+      method.schedule = pmesh::Schedule::exact;
+    } else if (std::string_view(argv[i]) != "--metric") {
       meshes.emplace_back(argv[i]);
     } else if (++i < argc) {
       metrics.emplace_back(argv[i]);
@@ -242,11 +274,11 @@ int main(int argc, char** argv) {
   print_header();
   for (const std::string& path : meshes) {
     for (const std::string& name : metrics) {
-      const pmesh::AnyMetric metric = parse_metric(name);
-      const Memory memory = measure_memory(path, metric);
+      method.metric = parse_metric(name);
+      const Memory memory = measure_memory(path, method);
       const pmesh::IndexedMesh mesh = load(path);
-      print_row(path, name, mesh.triangles.size(), measure_times(mesh, metric), memory,
-                measure_phases(mesh, metric));
+      print_row(path, name, mesh.triangles.size(), measure_times(mesh, method), memory,
+                measure_phases(mesh, method));
     }
   }
 }

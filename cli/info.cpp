@@ -1,4 +1,5 @@
 // pmesh info: what a PM file's header and index say.
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -8,6 +9,7 @@
 #include "cli/json.h"
 #include "cli/verb.h"
 #include "core/pm/pm_file.h"
+#include "core/pm/section_meter.h"
 
 namespace pmesh::cli {
 namespace {
@@ -23,7 +25,31 @@ Json error_or_null(const FileHeader& header, double error) {
   return header.errors_measured ? Json(error) : Json(nullptr);
 }
 
-Json to_json(const PmFile& file) {
+// Bytes by section, and bits a vertex of the finest mesh that the file holds.
+void add_sections(const PmFile& file, const SectionSizes& sizes, Json& json) {
+  const FileIndex& index = file.index();
+  const auto vertices = static_cast<double>(index.vertices_after(file.whole_chunks()));
+  Json& sections = json["sections"];
+  const auto add = [&](const char* name, double bytes) {
+    sections[name] = {{"bytes", std::llround(bytes)}, {"bits_per_vertex", 8 * bytes / vertices}};
+  };
+  const auto of_splits = [&](SplitSection section) {
+    return sizes.split_bits[static_cast<std::size_t>(section)] / 8;
+  };
+  add("header", static_cast<double>(sizes.header_bytes));
+  add("index", static_cast<double>(sizes.index_bytes));
+  add("base", static_cast<double>(sizes.base_bytes));
+  add("components", static_cast<double>(sizes.component_bytes));
+  add("batches", of_splits(SplitSection::batches));
+  add("marks", of_splits(SplitSection::marks));
+  add("cuts", of_splits(SplitSection::cuts));
+  add("positions", of_splits(SplitSection::positions));
+  add("relocations", of_splits(SplitSection::relocations));
+  json["bits_per_vertex"] =
+      8 * static_cast<double>(index.prefix_bytes(file.whole_chunks())) / vertices;
+}
+
+Json to_json(const PmFile& file, const SectionSizes& sizes) {
   const FileHeader& h = file.index().header;
   Json json = {
       {"vertices", h.vertices},
@@ -59,6 +85,7 @@ Json to_json(const PmFile& file) {
                       {"max_error", error_or_null(h, row.max_error)},
                       {"rms_error", error_or_null(h, row.rms_error)}});
   }
+  add_sections(file, sizes, json);
   return json;
 }
 
@@ -78,7 +105,7 @@ void print_chunks(const FileIndex& index) {
   }
 }
 
-void print_text(const PmFile& file) {
+int print_text(const PmFile& file) {
   const FileIndex& index = file.index();
   const FileHeader& h = index.header;
   std::printf("hash          %s\n", to_hex(h.content_hash).c_str());
@@ -99,17 +126,24 @@ void print_text(const PmFile& file) {
   std::printf("metric        %s %s\n", h.metric.c_str(), h.parameters.c_str());
   if (!h.errors_measured) std::printf("errors not measured\n");
   print_chunks(index);
+  return kExitOk;
+}
+
+// Decodes the file, to tell what its sections take.
+int print_measured(const PmFile& file) {
+  const FileIndex& index = file.index();
+  const Result<Bytes> bytes = file.read(0, index.prefix_bytes(file.whole_chunks()));
+  if (!bytes) return report("info", bytes.error());
+  const Result<SectionSizes> sizes = measure_sections(*bytes, index);
+  if (!sizes) return report("info", prefixed(file.file().path(), sizes.error()));
+  print_json(to_json(file, *sizes));
+  return kExitOk;
 }
 
 int run_info(const InfoOptions& options) {
   const Result<PmFile> file = PmFile::open(options.file);
   if (!file) return report("info", file.error());
-  if (options.json) {
-    print_json(to_json(*file));
-  } else {
-    print_text(*file);
-  }
-  return kExitOk;
+  return options.json ? print_measured(*file) : print_text(*file);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "cli/json.h"
 #include "cli/progress_bar.h"
 #include "cli/verb.h"
+#include "core/base/parse_number.h"
 #include "core/metrics/table.h"
 
 namespace pmesh::cli {
@@ -25,12 +27,14 @@ namespace {
 struct Options {
   PrecomputeOptions precompute;
   std::map<std::string, std::string> metric_parameters;  // by name, of those given
-  int quantization = 0;
   bool no_measure = false;
   bool force = false;
   bool json = false;
   bool quiet = false;
 };
+
+const std::map<std::string, Schedule> kSchedules = {{"batched", Schedule::batched},
+                                                    {"exact", Schedule::exact}};
 
 // Seconds spent in each phase.
 class PhaseClock {
@@ -199,9 +203,27 @@ void add_metric_options(CLI::App& verb, Options& options) {
   }
 }
 
+// CLI11's own ranges let NaN pass.
+std::string check_tolerance(const std::string& text) {
+  const std::optional<double> length = parse_whole<double>(text);
+  const bool fine = length && std::isfinite(*length) && *length > 0;
+  return fine ? std::string() : "expected a length above 0, not " + text;
+}
+
+void add_precision_options(CLI::App& verb, Precision& precision) {
+  CLI::Option* bits = verb.add_option("--quantization", precision.bits,
+                                      "Bits a coordinate; default: a step of at most 1/24 of the "
+                                      "median edge, 10 to 20 bits");
+  bits->check(CLI::Range(kMinLatticeBits, kMaxLatticeBits));
+  verb.add_option("--tolerance", precision.tolerance,
+                  "Instead, the most that a coordinate may move, in the mesh's units")
+      ->type_name("LENGTH")
+      ->check(check_tolerance)
+      ->excludes(bits);
+}
+
 int run_precompute(Options& options) {
   options.precompute.metric_parameters = joined(options.metric_parameters);
-  if (options.quantization != 0) options.precompute.lattice_bits = options.quantization;
   options.precompute.measure = !options.no_measure;
   options.precompute.overwrite = options.force ? Overwrite::yes : Overwrite::no;
   const PrecomputeOptions& job = options.precompute;
@@ -235,10 +257,11 @@ void add_precompute(CLI::App& app, int& exit_status) {
   verb->add_option("IN", job.input, "Mesh file: .ply, .obj, .stl or .off")->required();
   verb->add_option("-o,--output", job.output, "PM file to write: .pmesh")->required();
   add_metric_options(*verb, *options);
-  verb->add_option(
-          "--quantization", options->quantization,
-          "Bits a coordinate; default: a step of at most 1/24 of the median edge, 10 to 20 bits")
-      ->check(CLI::Range(kMinLatticeBits, kMaxLatticeBits));
+  add_precision_options(*verb, job.precision);
+  verb->add_option("--schedule", job.schedule,
+                   "Order of the collapses: batched (smaller files) or exact (the metric's own)")
+      ->transform(CLI::CheckedTransformer(kSchedules).description("batched|exact"))
+      ->default_str("batched");
   verb->add_option("--base-faces", job.base_faces, "Faces of the base mesh, if topology allows")
       ->check(CLI::Range(1u, 10'000'000u))
       ->capture_default_str();

@@ -51,16 +51,10 @@ std::string shortest(double value) {
   return {text, end};
 }
 
-/// What a chunk adds. Every split adds a vertex, and two faces or, on a border, one.
-struct ChunkGrowth {
-  std::uint64_t vertices, faces, border_splits;
-};
-
-ChunkGrowth growth(const FileIndex& index, std::size_t chunk) {
-  const std::uint64_t vertices = index.vertices_after(chunk + 1) - index.vertices_after(chunk);
-  const std::uint64_t faces = index.faces_after(chunk + 1) - index.faces_after(chunk);
-  const std::uint64_t border = 2 * vertices > faces ? 2 * vertices - faces : 0;
-  return {vertices, faces, std::min(border, vertices)};
+/// How many splits of a chunk add one face, being on a border; the others add two.
+std::uint64_t border_splits(const FileIndex& index, std::size_t chunk) {
+  const auto [splits, faces] = index.added_by_splits(chunk);
+  return 2 * splits > faces ? std::min(2 * splits - faces, splits) : 0;
 }
 
 /// The LOD that ends with chunk `chunk_count` - 1.
@@ -75,6 +69,17 @@ Resolution whole_file(const FileIndex& index) {
   Resolution everything = prefix(index, index.chunks.size());
   everything.end = index.header.file_bytes;
   return everything;
+}
+
+/// The LOD inside chunk `chunk` that its new components and `splits` splits make, of which
+/// `faces` are all.
+Resolution inside(const FileIndex& index, std::size_t chunk, std::uint64_t splits,
+                  std::uint64_t faces) {
+  Resolution lod = prefix(index, chunk + 1);
+  const MeshCounts arrivals = index.chunks[chunk].arrivals;
+  lod.vertices = index.vertices_after(chunk) + arrivals.vertices + splits;
+  lod.faces = index.faces_after(chunk) + arrivals.faces + faces;
+  return lod;
 }
 
 /// The base mesh, for a wish that wants less than it.
@@ -104,35 +109,32 @@ Resolution resolve_faces(std::uint64_t count, const FileIndex& index) {
   if (count < index.header.base_faces) return unreached(index);
   const std::size_t whole =
       most_chunks(index, [&](std::size_t c) { return index.faces_after(c) <= count; });
-  Resolution lod = prefix(index, whole);
+  const Resolution lod = prefix(index, whole);
   if (whole == index.chunks.size()) return lod;
 
-  const std::uint64_t spare = count - lod.faces;
-  const ChunkGrowth next = growth(index, whole);
-  const std::uint64_t border = std::min(spare, next.border_splits);
+  const MeshCounts arrivals = index.chunks[whole].arrivals;
+  if (count - lod.faces < arrivals.faces) return lod;
+  const std::uint64_t spare = count - lod.faces - arrivals.faces;
+  const std::uint64_t on_border = border_splits(index, whole);
+  const std::uint64_t border = std::min(spare, on_border);
   const std::uint64_t splits = border + (spare - border) / 2;
-  if (splits == 0) return lod;
-  lod.end = index.prefix_bytes(whole + 1);
-  lod.chunk_count = whole + 1;
-  lod.vertices += splits;
-  lod.faces += next.border_splits == 0 ? 2 * splits : spare;
-  return lod;
+  if (splits == 0 && arrivals.faces == 0) return lod;
+  return inside(index, whole, splits, on_border == 0 ? 2 * splits : spare);
 }
 
 Resolution resolve_vertices(std::uint64_t count, const FileIndex& index) {
   if (count < index.header.base_vertices) return unreached(index);
   const std::size_t whole =
       most_chunks(index, [&](std::size_t c) { return index.vertices_after(c) <= count; });
-  Resolution lod = prefix(index, whole);
+  const Resolution lod = prefix(index, whole);
   if (whole == index.chunks.size() || lod.vertices == count) return lod;
 
-  const std::uint64_t splits = count - lod.vertices;
-  const ChunkGrowth next = growth(index, whole);
-  lod.end = index.prefix_bytes(whole + 1);
-  lod.chunk_count = whole + 1;
-  lod.vertices = count;
-  lod.faces += splits + std::min(splits, next.vertices - next.border_splits);
-  return lod;
+  const MeshCounts arrivals = index.chunks[whole].arrivals;
+  if (count - lod.vertices < arrivals.vertices) return lod;
+  const std::uint64_t splits = count - lod.vertices - arrivals.vertices;
+  const std::uint64_t all_splits = index.added_by_splits(whole).vertices;
+  return inside(index, whole, splits,
+                splits + std::min(splits, all_splits - border_splits(index, whole)));
 }
 
 Resolution resolve_bytes(std::uint64_t count, const FileIndex& index) {

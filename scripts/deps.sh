@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that pmesh needs: deps.sh [build] [test] [demo] [fuzz] [run]
 # [peers]; the first three by default; `run` is for a machine that gets a built pmesh, `peers` for
-# bench/peers. Silent when nothing is missing.
+# bench/peers, bench/papers and bench/bytes. `test` also installs, into the source tree, the npm
+# package that tests/decoder-js needs. Silent when nothing is missing.
 set -euo pipefail
 
 build=(cmake g++ ninja-build libboost1.81-dev libcli11-dev libdraco-dev libgtest-dev libspdlog-dev
   libssl-dev nlohmann-json3-dev)
-test=(clang-format clang-tidy curl jq libmeshoptimizer-dev zstd)
+test=(clang-format clang-tidy curl jq libmeshoptimizer-dev nodejs npm zstd)
 demo=(ca-certificates curl jq nodejs npm)
 fuzz=(clang libclang-rt-14-dev)
 run=(libdraco7 libspdlog1.10 libssl3)
-peers=(libgl1-mesa-dri libmeshoptimizer-dev libopenmesh-dev meshlab python3 xauth xvfb)
+peers=(draco libgl1-mesa-dri libmeshoptimizer-dev libopenmesh-dev meshlab python3 xauth xvfb)
 
 fail() {
   echo "deps.sh: $*" >&2
@@ -42,6 +43,14 @@ as_root() {
   fi
 }
 
+# npm checks every download against the lock file.
+install_npm_packages() {
+  local folder=$1
+  if [ "$folder/node_modules/.package-lock.json" -nt "$folder/package-lock.json" ]; then return; fi
+  echo "deps.sh: npm packages of $folder" >&2
+  (cd "$folder" && npm ci --loglevel=error --no-audit --no-fund >/dev/null)
+}
+
 [ $# -gt 0 ] || set -- build test demo
 wanted=()
 for group in "$@"; do
@@ -63,3 +72,6 @@ if [ ${#missing[@]} -gt 0 ]; then
   as_root apt-get -qq update
   as_root apt-get -qq -y --no-install-recommends install "${missing[@]}" >/dev/null
 fi
+case " $* " in
+  *" test "*) install_npm_packages "$(dirname "$0")/../tests/decoder-js" ;;
+esac

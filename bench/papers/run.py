@@ -8,7 +8,6 @@ and the drawings DOCS/plots/*.svg. The figures stay in BUILD/out/papers.json. Se
 import argparse
 import json
 import pathlib
-import re
 import subprocess
 import sys
 import time
@@ -25,6 +24,7 @@ import lab
 import melod_2004
 import run as peers  # bench/peers/run.py
 import triangle_2011
+from template import fill
 
 # Each measures what can be kept as JSON, and reports it as pieces of text and plots by name.
 SECTIONS = {"melod": melod_2004, "feature-sensitive": feature_sensitive_2010,
@@ -70,14 +70,6 @@ def measure(names, equipment, kept):
     return figures
 
 
-def fill(template, pieces):
-    """The template with every {{name}} replaced; all pieces must be used."""
-    names = set(re.findall(r"\{\{(\w+)\}\}", template))
-    if names != set(pieces):
-        sys.exit(f"papers.md.in: {', '.join(sorted(names ^ set(pieces)))}: not in both")
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: pieces[match.group(1)].rstrip("\n"), template)
-
-
 def write_documents(figures, folder):
     missing = [name for name in SECTIONS if name not in figures]
     if missing:
@@ -85,7 +77,7 @@ def write_documents(figures, folder):
     plots, pieces = {}, {}
     for name, section in SECTIONS.items():
         pieces |= section.report(figures[name], plots)
-    text = fill((HERE / "papers.md.in").read_text(), pieces)
+    text = fill(HERE / "papers.md.in", pieces)
     (folder / "plots").mkdir(parents=True, exist_ok=True)
     for name, svg in plots.items():
         (folder / "plots" / name).write_text(svg)

@@ -66,6 +66,7 @@ class Pmesh : public Peer {
     std::vector<Triangle> triangles;
     if (!lods.levels().empty()) triangles = triangles_of(mesh_);
     DecimateOptions options;
+    options.schedule = Schedule::exact;
     options.metric = metric_;
     options.base_faces = faces;
     const Decimation result = pmesh::decimate(std::move(mesh_), std::move(positions_), options);

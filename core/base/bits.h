@@ -38,38 +38,4 @@ class BitWriter {
   int pending_bits_ = 0;
 };
 
-/// Reading past the end gives zero bits and sets failed().
-class BitReader {
- public:
-  explicit BitReader(ByteView bytes) : bytes_(bytes) {}
-
-  /// The next `count` bits. Precondition: count <= 32.
-  std::uint32_t get(int count) {
-    assert(count >= 0 && count <= 32);
-    while (available_ < count) {
-      if (position_ < bytes_.size()) {
-        pending_ |= std::uint64_t{bytes_[position_++]} << available_;
-      } else {
-        failed_ = true;
-      }
-      available_ += 8;
-    }
-    const auto value = static_cast<std::uint32_t>(pending_ & ((std::uint64_t{1} << count) - 1));
-    pending_ >>= count;
-    available_ -= count;
-    return value;
-  }
-
-  bool failed() const { return failed_; }
-  /// Whether nothing but the last byte's zero filling is left.
-  bool at_end() const { return position_ == bytes_.size() && available_ < 8 && pending_ == 0; }
-
- private:
-  ByteView bytes_;
-  std::size_t position_ = 0;
-  std::uint64_t pending_ = 0;
-  int available_ = 0;
-  bool failed_ = false;
-};
-
 }  // namespace pmesh

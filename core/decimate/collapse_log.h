@@ -21,6 +21,11 @@ struct CollapseLog {
   /// Collapses that belong together: 2 if the metric collapses triangles, each as two half-edge
   /// collapses; else 1. The log's length is a multiple of it, and no chunk ends within a step.
   std::uint32_t collapses_per_step = 1;
+
+  /// Where the schedule is batched: by batch, how many collapses there were at its end, ascending,
+  /// the last collapses.size(). Empty where it is exact. (See Schedule in decimate.h for what a
+  /// batch is.)
+  std::vector<std::uint32_t> batch_ends;
 };
 
 }  // namespace pmesh

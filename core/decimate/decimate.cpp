@@ -1,5 +1,6 @@
 #include "core/decimate/decimate.h"
 
+#include "core/decimate/batch_engine.h"
 #include "core/decimate/edge_candidates.h"
 #include "core/decimate/engine.h"
 #include "core/decimate/half_edge_candidates.h"
@@ -37,7 +38,8 @@ Decimation decimate(HalfEdgeMesh mesh, std::vector<Vec3d> positions,
       [&](const auto& metric) {
         auto candidates = make_candidates(work, metric, options);
         collapses_per_step = candidates.kCollapsesPerStep;
-        return Engine(work, candidates, options).run();
+        if (options.schedule == Schedule::exact) return Engine(work, candidates, options).run();
+        return BatchEngine(work, candidates, options).run();
       },
       options.metric);
   Decimation result{work.take_mesh(), work.take_log(), work.take_positions(), report};

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/decimate/batch_marks.h"
 #include "core/decimate/edge_patch.h"
 #include "core/decimate/edge_pricer.h"
 #include "core/decimate/edge_star.h"
@@ -42,7 +43,7 @@ class EdgeCandidates {
   std::uint32_t candidate_guess() const { return work_.mesh().live_faces() / 2 * 3 + 3; }
 
   // The cost of the edge. The link condition and fold-overs are left until it is popped.
-  double evaluate(HalfEdgeId edge, double /*popped*/, Scratch& scratch) {
+  double evaluate(HalfEdgeId edge, double /*popped*/, Scratch& scratch) const {
     if (!is_candidate(edge)) return kRefused;
     scratch.mark.enter(DecimationPhase::gather);
     gather_ends(work_, edge, scratch.star);
@@ -53,26 +54,31 @@ class EdgeCandidates {
 
   // What a popped edge is worth that was not collapsed: nothing, until a vertex near it has
   // changed; or its cost, if that had risen unnoticed since it was queued.
-  double evaluate_legal(HalfEdgeId edge, double popped, Scratch& scratch) {
+  double evaluate_legal(HalfEdgeId edge, double popped, Scratch& scratch) const {
     const double cost = evaluate(edge, popped, scratch);
     return cost > popped ? cost : kRefused;
   }
 
-  // False if the popped edge cannot be collapsed at the cost it was queued with.
-  bool collapse(HalfEdgeId edge, double popped, Scratch& scratch) {
+  // Whether the edge can be collapsed at the cost it was queued with.
+  bool may_collapse(HalfEdgeId edge, double popped, Scratch& scratch) const {
     if (!(evaluate(edge, popped, scratch) <= popped)) return false;
     scratch.mark.enter(DecimationPhase::legality);
-    EdgeStar& star = scratch.star;
-    const auto [removed, kept] = choose_removed(star);
+    const auto [removed, kept] = choose_removed(scratch.star);
     if (!gather_neighbours(work_.mesh(), removed, scratch.ring)) return false;
     if (!link_condition_holds(work_.mesh(), scratch.ring, scratch.ring.index_of(kept))) {
       return false;
     }
-    if (!gather_star(work_, star)) return false;
-    const Vec3d position = scratch.placement.position;
-    if (!may_fold_over_ && folds_over(star, position)) return false;
+    if (!gather_star(work_, scratch.star)) return false;
+    return may_fold_over_ || !folds_over(scratch.star, scratch.placement.position);
+  }
 
+  // False if the popped edge cannot be collapsed at the cost it was queued with.
+  bool collapse(HalfEdgeId edge, double popped, Scratch& scratch) {
+    if (!may_collapse(edge, popped, scratch)) return false;
     scratch.mark.enter(DecimationPhase::collapse);
+    const EdgeStar& star = scratch.star;
+    const auto [removed, kept] = choose_removed(star);
+    const Vec3d position = scratch.placement.position;
     note_gone(edge);
     metric_.fold(star, removed, kept, position);
     work_.collapse(removed, edge, work_.frame().from_unit(star.origin + position));
@@ -101,7 +107,28 @@ class EdgeCandidates {
     return costs_;
   }
 
+  bool is_live(HalfEdgeId h) const { return work_.mesh().is_live(HalfEdgeMesh::face(h)); }
+  std::array<VertexId, 2> moved(HalfEdgeId edge) const {
+    return {work_.mesh().origin(edge), work_.mesh().target(edge)};
+  }
+  std::span<const VertexId> ring() {
+    const VertexId merged = work_.log().collapses.back().kept;
+    ring_.assign({merged});
+    all_neighbours(work_.mesh(), merged, [&](VertexId v) {
+      ring_.push_back(v);
+      return true;
+    });
+    return ring_;
+  }
+
+  // Steps that do not meet leave each other's stars as they are: nothing can be taken.
+  bool collapse_unless_taken(HalfEdgeId edge, double popped, const BatchMarks& /*marks*/,
+                             Scratch& scratch) {
+    return collapse(edge, popped, scratch);
+  }
+
   void expect(HalfEdgeId /*next*/) {}
+  void look_ahead(HalfEdgeId /*next*/) const {}
 
   std::optional<Relaxation> relax() {
     if (std::exchange(may_fold_over_, true)) return std::nullopt;
@@ -170,6 +197,7 @@ class EdgeCandidates {
   EdgePatch patch_;  // around the last collapse's merged vertex
   std::vector<HalfEdgeId> gone_;
   std::vector<double> costs_;
+  std::vector<VertexId> ring_;  // of the last merged vertex, it included
   bool may_fold_over_ = false;
 };
 

@@ -1,6 +1,7 @@
-// The greedy decimation engine: queue, commit, stop rule and progress around a kind of candidate
-// (half_edge_candidates.h, edge_candidates.h, triangle_candidates.h), which brings the metric and
-// judges what is legal. Private to core/decimate; the interface is decimate.h.
+// The exact decimation engine, greedy by a heap: queue, commit, stop rule and progress around a
+// kind of candidate (half_edge_candidates.h, edge_candidates.h, triangle_candidates.h), which
+// brings the metric and judges what is legal. Private to core/decimate; the interface is
+// decimate.h.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/decimate/course.h"
 #include "core/decimate/decimate.h"
 #include "core/decimate/indexed_heap.h"
 #include "core/decimate/legality.h"
@@ -56,47 +58,25 @@ template <EngineCandidates Candidates>
 class Engine {
  public:
   Engine(WorkingMesh& work, Candidates& candidates, const DecimateOptions& options)
-      : work_(work), candidates_(candidates), options_(options), mark_{options.phase} {
+      : candidates_(candidates), options_(options), mark_{options.phase}, course_(work, options) {
     scratch_.mark = mark_;
   }
 
   DecimationReport run() {
     evaluate_all();
     collapse_all();
-    run_relaxed();
-    report_.faces = faces();
-    report_.vertices = work_.mesh().live_vertices();
-    return report_;
+    course_.run_relaxed(candidates_, [&] {
+      popped_ = 0;
+      evaluate_all();
+      collapse_all();
+    });
+    return course_.report();
   }
 
  private:
   using ElementId = typename Candidates::ElementId;
   using Heap = IndexedHeap<ElementId>;
   using Scratch = typename Candidates::Scratch;
-
-  // Above the target, an empty queue means that only what fails a test is left. Nothing else can
-  // have become legal unnoticed, because a link condition only comes to hold if the common
-  // neighbour in its way, or a vertex between, is removed: then the candidate's ends are neighbours
-  // of that vertex.
-  void run_relaxed() {
-    while (faces() > options_.base_faces) {
-      const std::optional<Relaxation> relaxed = candidates_.relax();
-      if (!relaxed) return;
-      const std::uint32_t faces_before = faces();
-      popped_ = 0;
-      evaluate_all();
-      collapse_all();
-      if (faces() < faces_before) note(*relaxed, faces_before);
-    }
-  }
-
-  void note(Relaxation relaxed, std::uint32_t faces_before) {
-    if (relaxed == Relaxation::turn) return;
-    std::optional<std::uint32_t>& first = relaxed == Relaxation::planarity
-                                              ? report_.planarity_relaxed_at_faces
-                                              : report_.fold_over_relaxed_at_faces;
-    if (!first) first = faces_before;
-  }
 
   // A block of elements at a time, so that no key is kept for an element without a candidate.
   void evaluate_all() {
@@ -126,8 +106,7 @@ class Engine {
   }
 
   void collapse_all() {
-    const std::uint64_t guess = done() + collapses_to_go();
-    while (faces() > options_.base_faces && !heap_.empty()) {
+    while (!course_.is_done() && !heap_.empty()) {
       mark_.enter(DecimationPhase::heap);
       const typename Heap::Entry next = heap_.pop();
       popped_ = next.key;
@@ -137,7 +116,7 @@ class Engine {
       } else {
         put(next.element, candidates_.evaluate_legal(next.element, popped_, scratch_));
       }
-      if (options_.progress && done() % kProgressStride == 0) options_.progress(done(), guess);
+      if (course_.collapses() % kProgressStride == 0) course_.show_progress();
     }
   }
 
@@ -168,26 +147,15 @@ class Engine {
     }
   }
 
-  std::uint32_t faces() const { return work_.mesh().live_faces(); }
-  std::uint64_t done() const { return work_.log().collapses.size(); }
-
-  // An estimate: vertices go in proportion to faces.
-  std::uint64_t collapses_to_go() const {
-    if (faces() <= options_.base_faces) return 0;
-    const std::uint64_t vertices = work_.mesh().live_vertices();
-    return 1 + vertices * (faces() - options_.base_faces) / faces();
-  }
-
   static constexpr std::size_t kProgressStride = 1 << 14;
 
-  WorkingMesh& work_;
   Candidates& candidates_;
   const DecimateOptions& options_;
   PhaseMark mark_;
+  Course course_;
   Heap heap_;
   Scratch scratch_;
   double popped_ = 0;
-  DecimationReport report_;
 };
 
 }  // namespace pmesh

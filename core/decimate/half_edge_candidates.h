@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/decimate/batch_marks.h"
 #include "core/decimate/indexed_heap.h"
 #include "core/decimate/legality.h"
 #include "core/decimate/metric.h"
@@ -60,7 +61,29 @@ class HalfEdgeCandidates {
     if (!work_.mesh().is_live(v) || !gather(v, scratch)) return kRefused;
     scratch.mark.enter(DecimationPhase::cost);
     price(scratch);
-    return choose(scratch, least(scratch), popped, head);
+    const std::uint32_t best = least(scratch);
+    return choose(scratch, by_shape_ && best != kNoIndex ? shapeliest(scratch, best) : best, popped,
+                  head);
+  }
+
+  // From now on evaluate() takes, of the heads as cheap as the cheapest, the one that leaves the
+  // shortest edges: on flat ground, where all cost nothing, whim would leave fans that no codec
+  // can guess.
+  void choose_ties_by_shape() { by_shape_ = true; }
+
+  // After evaluate(): how much less than its key says the vertex should be removed, for the sake of
+  // the codec, which expects it in the middle of its ring. At least 1.
+  static double coding_factor(const Scratch& scratch) {
+    const OneRing& ring = scratch.ring;
+    Vec3d sum{};
+    double squares = 0;
+    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
+      const Vec3d p = ring.position(i);
+      sum += p;
+      squares += dot(p, p);
+    }
+    const double n = ring.neighbours, off = dot(sum, sum) / (n * n), spread = squares / n - off;
+    return spread > 0 ? 1 + kCostOfOffCentre * off / spread : 1;
   }
 
   // Evaluates the popped vertex `v`, whose best candidate proved illegal, among its legal ones. Its
@@ -77,18 +100,28 @@ class HalfEdgeCandidates {
     return std::max(popped, choose(scratch, best, 0, head));
   }
 
-  // Collapses the popped vertex into the head that its evaluation chose; false if that is illegal.
-  bool collapse(VertexId removed, double /*popped*/, Scratch& scratch) {
+  // Whether the head that `v`'s evaluation chose is a legal one.
+  bool may_collapse(VertexId v, double /*popped*/, Scratch& scratch) const {
     scratch.mark.enter(DecimationPhase::legality);
-    const VertexId kept = heads_[removed.value];
-    [[maybe_unused]] const bool gathered = gather_neighbours(work_.mesh(), removed, scratch.ring);
-    assert(gathered);
-    if (!is_legal(scratch, scratch.ring.index_of(kept))) return false;
+    gather_candidate(v, scratch.ring);
+    return is_legal(scratch, scratch.ring.index_of(heads_[v.value]));
+  }
+
+  // Collapses the popped vertex into the head that its evaluation chose; false if that is illegal.
+  bool collapse(VertexId removed, double popped, Scratch& scratch) {
+    if (!may_collapse(removed, popped, scratch)) return false;
     ahead_.step();
-    scratch.mark.enter(DecimationPhase::collapse);
-    changed_.assign(scratch.ring.ids.begin(), scratch.ring.ids.begin() + scratch.ring.neighbours);
-    work_.collapse(removed, work_.mesh().find_edge(removed, kept));
-    metric_.fold(removed, kept);
+    commit(removed, scratch);
+    return true;
+  }
+
+  // The same for a vertex that was found legal, in a batch that has taken `marks` since.
+  bool collapse_unless_taken(VertexId removed, double /*popped*/, const BatchMarks& marks,
+                             Scratch& scratch) {
+    if (marks.is_kept(heads_[removed.value])) return false;
+    gather_candidate(removed, scratch.ring);
+    if (meets_kept(marks, scratch.ring, heads_[removed.value])) return false;
+    commit(removed, scratch);
     return true;
   }
 
@@ -106,6 +139,18 @@ class HalfEdgeCandidates {
     return keys_;
   }
 
+  bool is_live(VertexId v) const { return work_.mesh().is_live(v); }
+  std::array<VertexId, 1> moved(VertexId v) const { return {v}; }
+  std::span<const VertexId> ring() const { return changed_; }
+
+  void look_ahead(VertexId next) const {
+    if (!is_live(next)) return;
+    metric_.prefetch(next);
+    const HalfEdgeId first = work_.mesh().outgoing(next), before = work_.mesh().twin(first);
+    work_.mesh().prefetch(first);
+    if (before.valid()) work_.mesh().prefetch(before);
+  }
+
   void expect(VertexId next) {
     ahead_.start(next);
     metric_.prefetch(next);
@@ -118,6 +163,8 @@ class HalfEdgeCandidates {
   }
 
  private:
+  static constexpr double kNegligible = 1e-6;
+  static constexpr double kCostOfOffCentre = 4;  // docs/decisions/0012
   static constexpr bool kMovesFaces = M::kGeometry == RingGeometry::moved_faces;
 
   // False if `v` must not be removed.
@@ -129,6 +176,31 @@ class HalfEdgeCandidates {
     gather_positions(work_, scratch.ring);
     if constexpr (M::kGeometry != RingGeometry::neighbours) gather_faces(scratch.ring);
     return true;
+  }
+
+  void gather_candidate(VertexId v, OneRing& ring) const {
+    [[maybe_unused]] const bool gathered = gather_neighbours(work_.mesh(), v, ring);
+    assert(gathered);
+  }
+
+  // Into the head that the evaluation of `removed`, whose neighbours were gathered, chose.
+  void commit(VertexId removed, Scratch& scratch) {
+    scratch.mark.enter(DecimationPhase::collapse);
+    const OneRing& ring = scratch.ring;
+    const VertexId kept = heads_[removed.value];
+    changed_.assign(ring.ids.begin(), ring.ids.begin() + ring.neighbours);
+    work_.collapse(removed, work_.mesh().find_edge(removed, kept));
+    metric_.fold(removed, kept);
+  }
+
+  // Whether a batch's collapses have broken the link condition of one that does not meet them: they
+  // only add edges between what they kept and what was around what they removed. So if `kept` now
+  // has an edge to a neighbour that another one has kept, it may be a second one.
+  bool meets_kept(const BatchMarks& marks, const OneRing& ring, VertexId kept) const {
+    const auto is_met = [&](VertexId v) { return v != kept && marks.is_kept(v); };
+    const std::span neighbours(ring.ids.data(), ring.neighbours);
+    return std::any_of(neighbours.begin(), neighbours.end(), is_met) &&
+           !link_condition_holds(work_.mesh(), ring, ring.index_of(kept));
   }
 
   // The metric's state of a head is read if the floor of its cost does not rule it out.
@@ -193,6 +265,48 @@ class HalfEdgeCandidates {
     return best;
   }
 
+  // Of the candidates that cost no more than `best` but for a thousandth of an edge's length off
+  // the faces around (in the metrics that weigh squared distances by areas; less in others).
+  std::uint32_t shapeliest(Scratch& scratch, std::uint32_t best) const {
+    auto& [mark, ring, prepared, moved, costs, is_floor] = scratch;
+    const double square = length_squared_of_edges(ring);
+    const double most = costs[best] + kNegligible * square * square;
+    std::uint32_t chosen = best;
+    double shortest = new_edges(ring, best);
+    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
+      if (i == best || !(costs[i] <= most)) continue;
+      if constexpr (HasFloor<M>) {
+        if (is_floor[i]) {
+          is_floor[i] = false;
+          costs[i] = metric_.cost(ring, prepared, i, moved);
+          if (!(costs[i] <= most)) continue;
+        }
+      }
+      const double length = new_edges(ring, i);
+      if (length >= shortest) continue;
+      shortest = length;
+      chosen = i;
+    }
+    return chosen;
+  }
+
+  static double length_squared_of_edges(const OneRing& ring) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
+      sum += dot(ring.position(i), ring.position(i));
+    }
+    return sum / ring.neighbours;
+  }
+
+  // The length of the edges from neighbour `head` to all others.
+  static double new_edges(const OneRing& ring, std::uint32_t head) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
+      sum += length(ring.position(i) - ring.position(head));
+    }
+    return sum;
+  }
+
   double choose(const Scratch& scratch, std::uint32_t best, double popped, VertexId& head) const {
     if (best == kNoIndex) return kRefused;
     head = scratch.ring.ids[best];
@@ -217,6 +331,7 @@ class HalfEdgeCandidates {
   std::vector<double> keys_;  // of changed_
   RingAhead ahead_;
   bool may_fold_over_ = false;
+  bool by_shape_ = false;
 };
 
 }  // namespace pmesh

@@ -15,6 +15,19 @@ inline constexpr double kZeroAreaRatio = 1e-10;
 /// OneRing::kMaxFaces faces; the walk stops there.
 bool gather_neighbours(const HalfEdgeMesh& mesh, VertexId v, OneRing& ring);
 
+/// Whether holds(neighbour) is true of all neighbours of `v`, ccw until one fails.
+template <class Holds>
+bool all_neighbours(const HalfEdgeMesh& mesh, VertexId v, const Holds& holds) {
+  const HalfEdgeId first = mesh.outgoing(v);
+  HalfEdgeId last, h = first;
+  do {
+    if (!holds(mesh.target(h))) return false;
+    last = h;
+    h = mesh.rotate_ccw(h);
+  } while (h.valid() && h != first);
+  return h.valid() || holds(mesh.apex(last));
+}
+
 /// Fills in origin, positions and what lies beyond the border, after gather_neighbours.
 void gather_positions(const WorkingMesh& work, OneRing& ring);
 

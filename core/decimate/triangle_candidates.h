@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/decimate/batch_marks.h"
 #include "core/decimate/legality.h"
+#include "core/decimate/one_ring.h"
 #include "core/decimate/triangle_star.h"
 #include "core/decimate/working_mesh.h"
 
@@ -31,7 +33,7 @@ class TriangleCandidates {
   std::uint32_t candidate_guess() const { return work_.mesh().live_faces(); }
 
   // The cost of the face. Its star is left until it is popped.
-  double evaluate(FaceId face, double /*popped*/, Scratch& scratch) {
+  double evaluate(FaceId face, double /*popped*/, Scratch& scratch) const {
     if (!work_.mesh().is_live(face)) return kRefused;
     scratch.mark.enter(DecimationPhase::gather);
     if (!gather_triangle(work_, face, scratch.star) || is_locked(scratch.star)) return kRefused;
@@ -41,17 +43,21 @@ class TriangleCandidates {
 
   // What a popped face is worth that was not collapsed: nothing, until a vertex near it has
   // changed; or its cost, if that had risen unnoticed since it was queued.
-  double evaluate_legal(FaceId face, double popped, Scratch& scratch) {
+  double evaluate_legal(FaceId face, double popped, Scratch& scratch) const {
     const double cost = evaluate(face, popped, scratch);
     return cost > popped ? cost : kRefused;
   }
 
-  // False if the popped face cannot be collapsed at the cost it was queued with.
-  bool collapse(FaceId face, double popped, Scratch& scratch) {
+  // Whether the face can be collapsed at the cost it was queued with.
+  bool may_collapse(FaceId face, double popped, Scratch& scratch) const {
     if (!(evaluate(face, popped, scratch) <= popped)) return false;
     scratch.mark.enter(DecimationPhase::legality);
-    if (!is_legal(face, scratch.star)) return false;
+    return is_legal(face, scratch.star);
+  }
 
+  // False if the popped face cannot be collapsed at the cost it was queued with.
+  bool collapse(FaceId face, double popped, Scratch& scratch) {
+    if (!may_collapse(face, popped, scratch)) return false;
     scratch.mark.enter(DecimationPhase::collapse);
     note_gone(face);
     const TriangleStar& star = scratch.star;
@@ -73,7 +79,29 @@ class TriangleCandidates {
     return costs_;
   }
 
+  bool is_live(FaceId face) const { return work_.mesh().is_live(face); }
+  std::array<VertexId, 3> moved(FaceId face) const {
+    const auto corners = work_.mesh().corners().subspan(3 * std::size_t{face.value}, 3);
+    return {corners[0], corners[1], corners[2]};
+  }
+  std::span<const VertexId> ring() {
+    const VertexId merged = work_.log().collapses.back().kept;
+    ring_.assign({merged});
+    all_neighbours(work_.mesh(), merged, [&](VertexId v) {
+      ring_.push_back(v);
+      return true;
+    });
+    return ring_;
+  }
+
+  // Steps that do not meet leave each other's stars as they are: nothing can be taken.
+  bool collapse_unless_taken(FaceId face, double popped, const BatchMarks& /*marks*/,
+                             Scratch& scratch) {
+    return collapse(face, popped, scratch);
+  }
+
   void expect(FaceId /*next*/) {}
+  void look_ahead(FaceId /*next*/) const {}
 
   std::optional<Relaxation> relax() {
     if (round_ + 1 < M::kRounds) {
@@ -151,6 +179,7 @@ class TriangleCandidates {
   std::vector<FaceId> gone_, changed_, touched_;
   std::uint32_t round_ = 0;
   std::vector<double> costs_;
+  std::vector<VertexId> ring_;  // of the last merged vertex, it included
   bool may_fold_over_ = false;
 };
 

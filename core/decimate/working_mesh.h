@@ -1,9 +1,11 @@
 // The mesh in the making: what a decimation's candidates and its engine share.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cassert>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -63,6 +65,14 @@ class WorkingMesh {
     kept = position;
   }
 
+  /// Ends a batch of steps of `per_step` collapses, and puts what it has logged into another order:
+  /// by new place, the step's old place in the batch.
+  void end_batch(std::span<const std::uint32_t> order, std::uint32_t per_step) {
+    reorder(log_.collapses, order, per_step);
+    if (!log_.kept_before.empty()) reorder(log_.kept_before, order, per_step);
+    log_.batch_ends.push_back(static_cast<std::uint32_t>(log_.collapses.size()));
+  }
+
   /// Asks for what there is of `v` to be brought into the caches.
   void prefetch(VertexId v) const {
     mesh_.prefetch(v);
@@ -74,6 +84,17 @@ class WorkingMesh {
   CollapseLog take_log() { return std::move(log_); }
 
  private:
+  template <class T>
+  static void reorder(std::vector<T>& log, std::span<const std::uint32_t> order,
+                      std::uint32_t per_step) {
+    const auto batch = log.end() - static_cast<std::ptrdiff_t>(order.size() * per_step);
+    const std::vector<T> logged(batch, log.end());
+    auto to = batch;
+    for (const std::uint32_t step : order) {
+      to = std::copy_n(logged.begin() + std::size_t{step} * per_step, per_step, to);
+    }
+  }
+
   HalfEdgeMesh mesh_;
   std::vector<Vec3d> positions_;  // a removed vertex keeps its last
   MetricFrame frame_;

@@ -1,5 +1,5 @@
-// HalfEdgeMesh's edits: collapse, split and its undo, and the search for the site that inverts a
-// collapse. Names as in half_edge_mesh.h's picture.
+// HalfEdgeMesh's edits: collapse, split and append with their undoing, and the search for the site
+// that inverts a collapse. Names as in half_edge_mesh.h's picture.
 #include "core/mesh/half_edge_mesh.h"
 
 namespace pmesh {
@@ -201,6 +201,25 @@ void HalfEdgeMesh::undo_split(const SplitSite& site) {
   outgoing_.pop_back();
   origins_.resize(origins_.size() - 3 * static_cast<std::size_t>(site.added_faces()));
   twins_.resize(origins_.size());
+}
+
+void HalfEdgeMesh::append(const HalfEdgeMesh& components) {
+  const std::uint32_t first_vertex = vertex_slots(), first_half_edge = 3 * face_slots();
+  for (const VertexId v : components.origins_) origins_.emplace_back(first_vertex + v.value);
+  for (const HalfEdgeId h : components.twins_) {
+    twins_.push_back(h.valid() ? HalfEdgeId(first_half_edge + h.value) : h);
+  }
+  for (const HalfEdgeId h : components.outgoing_) outgoing_.emplace_back(first_half_edge + h.value);
+  live_vertices_ += components.live_vertices_;
+  live_faces_ += components.live_faces_;
+}
+
+void HalfEdgeMesh::undo_append(std::uint32_t vertices, std::uint32_t faces) {
+  origins_.resize(origins_.size() - 3 * std::size_t{faces});
+  twins_.resize(origins_.size());
+  outgoing_.resize(outgoing_.size() - vertices);
+  live_vertices_ -= vertices;
+  live_faces_ -= faces;
 }
 
 SplitSite HalfEdgeMesh::find_site(const HalfEdgeCollapse& collapse) const {

@@ -161,6 +161,13 @@ class HalfEdgeMesh {
   /// they were, bit for bit. (outgoing() of an interior vertex may differ: any is valid.)
   void undo_split(const SplitSite& site);
 
+  /// Appends `components`: its vertices and faces get the next ids, in their order. Preconditions:
+  /// no dead slots in either, and both together have at most kNoIndex / 3 faces.
+  void append(const HalfEdgeMesh& components);
+
+  /// Undoes the last append(), which was of a mesh of that many vertices and faces.
+  void undo_append(std::uint32_t vertices, std::uint32_t faces);
+
   /// The site whose split undoes `collapse`, in this mesh, the state just after it.
   /// The moved fan must have at most kMaxMovedFaces faces. O(moved faces + the smaller valence
   /// of kept and left).

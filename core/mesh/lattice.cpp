@@ -1,7 +1,9 @@
 #include "core/mesh/lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -17,7 +19,44 @@ double largest_coordinate(const Box<double>& box) {
                    std::abs(box.high.x), std::abs(box.high.y), std::abs(box.high.z)});
 }
 
+double last_coordinate(int bits) { return std::ldexp(1.0, bits) - 1; }
+
 bool is_finite(Vec3d p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+Result<Box<double>> finite_box(const std::vector<Vec3d>& positions) {
+  if (!std::all_of(positions.begin(), positions.end(), is_finite)) {
+    return bad_input("a position is not finite");
+  }
+  const Box<double> box = bounding_box(std::span(positions));
+  if (!std::isfinite(box.longest_side())) return bad_input("the bounding box is not finite");
+  return box;
+}
+
+// `lattice`, if doubles in `box` can tell its points apart.
+Result<Lattice> checked(const Lattice& lattice, const Box<double>& box) {
+  const double largest = largest_coordinate(box);
+  const double resolution = largest - std::nextafter(largest, 0);
+  if (box.longest_side() > 0 &&
+      (lattice.step < resolution || lattice.step < std::numeric_limits<double>::min())) {
+    return bad_input("quantisation to " + std::to_string(lattice.bits) +
+                     " bits is finer than double precision at these coordinates");
+  }
+  return lattice;
+}
+
+std::string three_digits(double value) {
+  std::array<char, 32> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3);
+  return {text.data(), end.ptr};
+}
+
+Error too_fine(double tolerance, double side) {
+  const std::string most = std::to_string(kMaxLatticeBits);
+  return bad_input("a tolerance of " + three_digits(tolerance) + " takes more than " + most +
+                   " bits a coordinate; at " + most + " bits it is " +
+                   three_digits(0.5 * side / last_coordinate(kMaxLatticeBits)));
+}
 
 // In units of `side`, so that no mesh is too large or small for its edges to be squared.
 double median_edge_length(const IndexedMesh& mesh, double side) {
@@ -38,7 +77,7 @@ double median_edge_length(const IndexedMesh& mesh, double side) {
 }  // namespace
 
 Vec3i Lattice::quantise(Vec3d position) const {
-  const double last = std::ldexp(1.0, bits) - 1;
+  const double last = last_coordinate(bits);
   const auto nearest = [&](double value, double low) {
     return static_cast<std::int32_t>(std::clamp(std::round((value - low) / step), 0.0, last));
   };
@@ -48,22 +87,28 @@ Vec3i Lattice::quantise(Vec3d position) const {
 
 Result<Lattice> make_lattice(const std::vector<Vec3d>& positions, int bits) {
   assert(!positions.empty() && bits >= kMinLatticeBits && bits <= kMaxLatticeBits);
-  if (!std::all_of(positions.begin(), positions.end(), is_finite)) {
-    return bad_input("a position is not finite");
+  const Result<Box<double>> box = finite_box(positions);
+  if (!box) return box.error();
+  const double side = box->longest_side();
+  return checked(
+      {box->low, side > 0 ? side / last_coordinate(bits) : 1, static_cast<std::uint8_t>(bits)},
+      *box);
+}
+
+Result<Lattice> make_lattice_within(const std::vector<Vec3d>& positions, double tolerance) {
+  assert(!positions.empty() && std::isfinite(tolerance) && tolerance > 0);
+  const Result<Box<double>> box = finite_box(positions);
+  if (!box) return box.error();
+  const double side = box->longest_side();
+  if (side == 0 || tolerance >= 0.5 * side / last_coordinate(kMinLatticeBits)) {
+    return make_lattice(positions, kMinLatticeBits);
   }
-  const Box<double> box = bounding_box(std::span(positions));
-  const double side = box.longest_side();
-  if (!std::isfinite(side)) return bad_input("the bounding box is not finite");
-  Lattice lattice{box.low, side / (std::ldexp(1.0, bits) - 1), static_cast<std::uint8_t>(bits)};
-  if (side == 0) lattice.step = 1;
-  const double largest = largest_coordinate(box);
-  const double resolution = largest - std::nextafter(largest, 0);
-  if (side > 0 &&
-      (lattice.step < resolution || lattice.step < std::numeric_limits<double>::min())) {
-    return bad_input("quantisation to " + std::to_string(bits) +
-                     " bits is finer than double precision at these coordinates");
+  const double step = 2 * tolerance;
+  int bits = kMinLatticeBits;
+  while (step * last_coordinate(bits) < side) {
+    if (++bits > kMaxLatticeBits) return too_fine(tolerance, side);
   }
-  return lattice;
+  return checked({box->low, step, static_cast<std::uint8_t>(bits)}, *box);
 }
 
 int default_lattice_bits(const IndexedMesh& mesh) {
@@ -74,7 +119,7 @@ int default_lattice_bits(const IndexedMesh& mesh) {
   if (!(side > 0)) return kFewest;
   const double edge = median_edge_length(mesh, side);
   int bits = kFewest;
-  while (bits < kMost && kStepsPerEdge / (std::ldexp(1.0, bits) - 1) > edge) ++bits;
+  while (bits < kMost && kStepsPerEdge / last_coordinate(bits) > edge) ++bits;
   return bits;
 }
 

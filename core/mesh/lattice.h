@@ -33,6 +33,12 @@ struct Lattice {
 /// coordinate). Precondition: positions is not empty, kMinLatticeBits <= bits <= kMaxLatticeBits.
 Result<Lattice> make_lattice(const std::vector<Vec3d>& positions, int bits);
 
+/// The coarsest lattice over that box which moves no coordinate of `positions` by more than
+/// `tolerance` (doubles' own rounding apart): its step is twice the tolerance, or that of
+/// kMinLatticeBits bits if that is finer. Fails as above, or if it would take more than
+/// kMaxLatticeBits. Precondition: positions is not empty, tolerance is finite and > 0.
+Result<Lattice> make_lattice_within(const std::vector<Vec3d>& positions, double tolerance);
+
 /// The default precision: the fewest bits, 10 to 20, whose step is at most 1/24 of the median
 /// edge length of `mesh` (about one degree of noise in a normal).
 int default_lattice_bits(const IndexedMesh& mesh);

@@ -153,7 +153,7 @@ class DracoHeader {
  public:
   explicit DracoHeader(ByteView bytes) : reader_(bytes) {}
 
-  Status check(const FileHeader& header) {
+  Status check(const MeshCounts& counts) {
     constexpr std::uint8_t kMesh = 1, kSequential = 0, kEdgeBreaker = 1;
     const ByteView magic = reader_.take(5);
     const auto major = reader_.get<std::uint8_t>(), minor = reader_.get<std::uint8_t>();
@@ -167,7 +167,7 @@ class DracoHeader {
     const std::uint64_t first = varint(), second = varint();
     const std::uint64_t faces = method == kSequential ? first : second;
     const std::uint64_t vertices = method == kSequential ? second : first;
-    if (reader_.failed() || faces != header.base_faces || vertices != header.base_vertices) {
+    if (reader_.failed() || MeshCounts{vertices, faces} != counts) {
       return bad_input("Draco's counts differ from the header's");
     }
     return {};
@@ -199,8 +199,8 @@ Result<EncodedBase> encode_base(const LatticeMesh& base) {
   }
 }
 
-Result<LatticeMesh> decode_base(ByteView bytes, const FileHeader& header) {
-  if (Status status = DracoHeader(bytes).check(header); !status) return status.error();
+Result<LatticeMesh> decode_base(ByteView bytes, const MeshCounts& counts) {
+  if (Status status = DracoHeader(bytes).check(counts); !status) return status.error();
   try {
     const auto mesh = decode(bytes);
     if (!mesh) return mesh.error();

@@ -1,4 +1,5 @@
-// The base mesh as Draco bytes and back: the one room that knows Draco. Clients use it too.
+// The base mesh, or a chunk's new components, as Draco bytes and back: the one room that knows
+// Draco. Clients use it too.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,9 @@ struct EncodedBase {
 /// Fails (runtime) if Draco does. Precondition: HalfEdgeMesh::build accepts base.triangles.
 Result<EncodedBase> encode_base(const LatticeMesh& base);
 
-/// The BaseDecoder of native programs (core/pm/stream_decoder.h). The counts that Draco's own
-/// header claims are held against `header` before Draco is called. Vertices, faces and corners
-/// come in Draco's order. Errors: bad_input, out_of_resources.
-Result<LatticeMesh> decode_base(ByteView bytes, const FileHeader& header);
+/// The BaseDecoder of native programs (core/pm/mesh_section.h). The counts that Draco's own header
+/// claims are held against `counts` before Draco is called. Vertices, faces and corners come in
+/// Draco's order. Errors: bad_input, out_of_resources.
+Result<LatticeMesh> decode_base(ByteView bytes, const MeshCounts& counts);
 
 }  // namespace pmesh

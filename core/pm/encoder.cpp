@@ -6,9 +6,14 @@
 #include "core/base/box.h"
 #include "core/base/crc32c.h"
 #include "core/pm/base_codec.h"
+#include "core/pm/batch_builder.h"
+#include "core/pm/chunk_writer.h"
+#include "core/pm/components.h"
 #include "core/pm/digest.h"
+#include "core/pm/fit_parameters.h"
 #include "core/pm/format.h"
-#include "core/pm/split_encoder.h"
+#include "core/pm/mesh_section.h"
+#include "core/pm/split_coder.h"
 #include "core/refine/refinable_mesh.h"
 
 namespace pmesh {
@@ -16,33 +21,74 @@ namespace {
 
 constexpr std::size_t kFirstChunkBytes = 4 * 1024;
 constexpr std::size_t kLargestChunkBytes = 256 * 1024;
+constexpr std::size_t kBitsOfSplit = 17;  // what a split takes, about
 
-// Replays the log backwards on the base and cuts the splits into chunks.
-class ChunkWriter {
+// What a base that leaves room for header and index in the first 16 KiB has at most, if components
+// can be put off for it.
+constexpr std::size_t kSmallBaseFaces = 2000;
+constexpr std::size_t kSmallBaseBytes = kMaxPrologueBytes / 2;
+
+// The first components, coded.
+struct Base {
+  std::size_t components = 0;
+  std::vector<VertexId> originals;
+  EncodedBase coded;
+};
+
+Result<Base> encode_first(const Components& components, std::size_t count) {
+  Components::Part part = components.part(0, count);
+  Result<EncodedBase> coded = encode_base(part.mesh);
+  if (!coded) return prefixed("base mesh", coded.error());
+  return Base{count, std::move(part.originals), std::move(*coded)};
+}
+
+// As many components, largest first, as keep the base small, but at least one.
+Result<Base> choose_base(const Components& components) {
+  std::size_t count = 1;
+  while (count < components.count() && components.faces(0, count + 1) <= kSmallBaseFaces) ++count;
+  while (true) {
+    Result<Base> base = encode_first(components, count);
+    if (!base || count == 1 || base->coded.bytes.size() <= kSmallBaseBytes) return base;
+    const std::size_t that_fit = count * kSmallBaseBytes / base->coded.bytes.size();
+    count = std::clamp<std::size_t>(that_fit, 1, count - 1);
+  }
+}
+
+// Gathers the log's splits into batches, and new components and batches into chunks.
+class BodyWriter {
  public:
-  ChunkWriter(const EncodeInput& input, const FileHeader& header, const LatticeMesh& base,
-              std::vector<VertexId> file_ids)
-      : input_(input),
-        header_(header),
-        mesh_(RefinableMesh::from_base(base).value()),
-        file_ids_(std::move(file_ids)) {
+  BodyWriter(const EncodeInput& input, const FileHeader& header, const Components& components,
+             const Base& base)
+      : header_(header),
+        step_(input.log.collapses_per_step),
+        components_(components),
+        arrived_(base.components),
+        bytes_a_vertex_(static_cast<double>(base.coded.bytes.size()) /
+                        static_cast<double>(base.originals.size())),
+        mesh_(RefinableMesh::from_base(base.coded.decoded).value()),
+        state_(mesh_),
+        builder_(input.log, input.positions, input.lattice) {
     mesh_.reserve(static_cast<std::uint32_t>(header.vertices),
                   static_cast<std::uint32_t>(header.faces));
+    place(base.originals, base.coded, 0);
+    builder_.add(components.collapses(0, arrived_));
   }
 
   /// Appends chunks to `body` and their rows to `rows`; false as soon as there are more than
   /// `most_rows`.
-  bool write(std::size_t largest, std::size_t most_rows, std::vector<ChunkRow>& rows, Bytes& body) {
-    const std::size_t step = input_.log.collapses_per_step;
-    const std::size_t step_bytes = step * header_.max_split_bytes();
+  Result<bool> write(std::size_t largest, std::size_t most_rows, std::vector<ChunkRow>& rows,
+                     Bytes& body) {
     std::size_t target = kFirstChunkBytes;
-    for (std::size_t left = input_.log.collapses.size(); left > 0;) {
+    while (builder_.left() > 0 || arrived_ < components_.count()) {
       if (rows.size() == most_rows) return false;
-      SplitEncoder chunk(header_);
-      while (left > 0 && chunk.byte_count() + step_bytes <= target) {
-        for (std::size_t k = 0; k < step; ++k) put_split(--left, chunk);
+      ChunkRow row;
+      Bytes bytes;
+      if (arrived_ < components_.count()) {
+        if (Status put = put_components(target / 2, row, bytes); !put) return put.error();
       }
-      rows.push_back(finish(std::move(chunk), body));
+      put_splits(target, largest * 8 / kBitsOfSplit, bytes);
+      finish(bytes, row, body);
+      rows.push_back(row);
       target = std::min(target + target / 2, largest);
     }
     return true;
@@ -52,47 +98,92 @@ class ChunkWriter {
   std::span<const Vec3i> positions() const { return mesh_.positions(); }
 
  private:
-  VertexId file_id(VertexId original) const {
-    return original.valid() ? file_ids_[original.value] : original;
+  void place(std::span<const VertexId> originals, const EncodedBase& coded,
+             std::uint32_t first_vertex) {
+    for (std::size_t v = 0; v < originals.size(); ++v) {
+      builder_.place(originals[v], VertexId(first_vertex + coded.decoded_vertex[v]));
+    }
   }
 
-  Vec3i relocation(std::size_t index) const {
-    if (!header_.has_relocations) return {};
-    const VertexId kept = file_id(input_.log.collapses[index].kept);
-    return input_.lattice.quantise(input_.log.kept_before[index]) - mesh_.positions()[kept.value];
+  // The next components, of about `target` bytes together.
+  Status put_components(std::size_t target, ChunkRow& row, Bytes& bytes) {
+    const std::size_t first = arrived_++;
+    while (arrived_ < components_.count() &&
+           bytes_a_vertex_ * static_cast<double>(components_.vertices(first, arrived_ + 1)) <=
+               static_cast<double>(target)) {
+      ++arrived_;
+    }
+    const Components::Part part = components_.part(first, arrived_);
+    const Result<EncodedBase> coded = encode_base(part.mesh);
+    if (!coded) return prefixed("new components", coded.error());
+    place(part.originals, *coded, mesh_.vertex_count());
+    [[maybe_unused]] const Status arrived = mesh_.append(coded->decoded);
+    assert(arrived.ok());
+    state_.grow(mesh_);
+    builder_.add(components_.collapses(first, arrived_));
+    row.arrivals = {part.mesh.positions.size(), part.mesh.triangles.size()};
+    bytes = write_components(coded->bytes);
+    bytes_a_vertex_ =
+        static_cast<double>(bytes.size()) / static_cast<double>(row.arrivals.vertices);
+    return {};
   }
 
-  void put_split(std::size_t index, SplitEncoder& chunk) {
-    const HalfEdgeCollapse& collapse = input_.log.collapses[index];
-    const HalfEdgeCollapse renamed{VertexId(mesh_.vertex_count()), file_id(collapse.kept),
-                                   file_id(collapse.left), file_id(collapse.right)};
-    const VertexSplit split{mesh_.connectivity().find_site(renamed),
-                            input_.positions[collapse.removed.value], relocation(index)};
-    chunk.put(split, mesh_);
-    [[maybe_unused]] const Status applied = mesh_.append(split);
-    assert(applied.ok());
-    file_ids_[collapse.removed.value] = renamed.removed;
+  // Batches that fill the chunk up to about `target` bytes.
+  void put_splits(std::size_t target, std::size_t most, Bytes& bytes) {
+    if (builder_.left() == 0) return;
+    ChunkWriter chunk;
+    const std::uint32_t before = mesh_.vertex_count();
+    do {
+      put_batch(chunk, most);
+    } while (builder_.left() > 0 && !is_full(bytes.size() + chunk.byte_count(), before, target));
+    const std::uint32_t splits = mesh_.vertex_count() - before;
+    const Bytes coded = std::move(chunk).finish(splits / 8 + 1);
+    bytes.insert(bytes.end(), coded.begin(), coded.end());
   }
 
-  ChunkRow finish(SplitEncoder chunk, Bytes& body) const {
-    const Bytes bytes = std::move(chunk).finish();
-    ChunkRow row;
+  // Whether the next batch would overshoot the target more than its lack falls short of it. Never
+  // in the middle of a step.
+  bool is_full(std::size_t bytes, std::uint32_t before, std::size_t target) const {
+    if ((mesh_.vertex_count() - before) % step_ != 0) return false;
+    const std::size_t ahead = builder_.batch_size_ahead() * kBitsOfSplit / 8;
+    return bytes + ahead / 2 > target;
+  }
+
+  void put_batch(ChunkWriter& chunk, std::size_t most) {
+    std::vector<BatchSplit> batch = builder_.next(most, mesh_, state_);
+    const BatchParameters parameters = fit_parameters(mesh_, batch, model_.parameters);
+    SplitCoder<ChunkWriter> coder(chunk, header_, model_, mesh_, state_);
+    [[maybe_unused]] Status done =
+        coder.code(batch, static_cast<std::uint32_t>(batch.size()), parameters);
+    assert(done.ok());
+    const std::uint32_t first_vertex = mesh_.vertex_count();
+    done = state_.apply(batch, mesh_);
+    assert(done.ok());
+    builder_.applied(state_.order(), first_vertex);
+  }
+
+  void finish(const Bytes& bytes, ChunkRow& row, Bytes& body) const {
     row.bytes = static_cast<std::uint32_t>(bytes.size());
     row.crc = crc32c(bytes);
     row.digest = digest_section(bytes);
     row.vertices = mesh_.vertex_count();
     row.faces = mesh_.face_count();
     body.insert(body.end(), bytes.begin(), bytes.end());
-    return row;
   }
 
-  const EncodeInput& input_;
   const FileHeader& header_;
+  std::uint32_t step_;
+  const Components& components_;
+  std::size_t arrived_;    // components
+  double bytes_a_vertex_;  // of those that arrived last
+  SplitModel model_;
   RefinableMesh mesh_;
-  std::vector<VertexId> file_ids_;  // by original vertex, once it stands
+  BatchMesh state_;
+  BatchBuilder builder_;
 };
 
-FileHeader describe(const EncodeInput& input, const EncodedBase& base) {
+FileHeader describe(const EncodeInput& input, const Components& components, const Base& chosen) {
+  const EncodedBase& base = chosen.coded;
   FileHeader header;
   header.lattice = input.lattice;
   header.metric = input.metric;
@@ -103,32 +194,38 @@ FileHeader describe(const EncodeInput& input, const EncodedBase& base) {
   header.base_bytes = base.bytes.size();
   header.base_crc = crc32c(base.bytes);
   header.base_digest = digest_section(base.bytes);
-  header.vertices = header.base_vertices + input.log.collapses.size();
-  header.faces = header.base_faces;
+  header.vertices = input.base.live_vertices() + input.log.collapses.size();
+  header.faces = input.base.live_faces();
   for (const HalfEdgeCollapse& collapse : input.log.collapses) {
     header.faces += static_cast<std::uint64_t>(collapse.removed_faces());
     header.has_borders |= collapse.removed_faces() == 1;
   }
   header.has_relocations = !input.log.kept_before.empty();
+  header.has_arrivals = chosen.components < components.count();
   return header;
 }
 
+// Rows that fit the prologue, and leave room for a small base in the first 16 KiB.
 std::size_t most_rows(const FileIndex& index) {
   FileIndex one_row = index;
   one_row.chunks.resize(1);
   const std::size_t header = prologue_size(index);
-  return (kMaxPrologueBytes - header) / (prologue_size(one_row) - header);
+  const std::size_t base = index.header.base_bytes;
+  const std::size_t room = kMaxPrologueBytes - (base <= kSmallBaseBytes ? base : 0);
+  return (room - header) / (prologue_size(one_row) - header);
 }
 
 // Base and chunks; fills in the index's rows, and its box from the mesh that they end in.
-Bytes write_body(const EncodeInput& input, const EncodedBase& base,
-                 const std::vector<VertexId>& file_ids, FileIndex& index) {
+Result<Bytes> write_body(const EncodeInput& input, const Components& components, const Base& base,
+                         FileIndex& index) {
   const std::size_t rows_that_fit = most_rows(index);
   for (std::size_t largest = kLargestChunkBytes;; largest *= 2) {
-    Bytes body = base.bytes;
+    Bytes body = base.coded.bytes;
     index.chunks.clear();
-    ChunkWriter writer(input, index.header, base.decoded, file_ids);
-    if (!writer.write(largest, rows_that_fit, index.chunks, body)) continue;
+    BodyWriter writer(input, index.header, components, base);
+    const Result<bool> fits = writer.write(largest, rows_that_fit, index.chunks, body);
+    if (!fits) return fits.error();
+    if (!*fits) continue;
     const Box<std::int32_t> box = bounding_box(writer.positions());
     index.header.box_low = box.low;
     index.header.box_high = box.high;
@@ -142,25 +239,19 @@ Result<Bytes> encode(const EncodeInput& input) {
   [[maybe_unused]] const CollapseLog& log = input.log;
   assert(log.kept_before.empty() || log.kept_before.size() == log.collapses.size());
   assert(log.collapses.size() % log.collapses_per_step == 0);
-  LiveMesh live = input.base.live();
-  LatticeMesh mesh;
-  for (const VertexId v : live.vertices) mesh.positions.push_back(input.positions[v.value]);
-  mesh.triangles = std::move(live.triangles);
-  Result<EncodedBase> base = encode_base(mesh);
-  if (!base) return prefixed("base mesh", base.error());
-  std::vector<VertexId> file_ids(input.base.vertex_slots());
-  for (std::size_t v = 0; v < live.vertices.size(); ++v) {
-    file_ids[live.vertices[v].value] = VertexId(base->decoded_vertex[v]);
-  }
+  const Components components(input.base, input.positions, input.log);
+  const Result<Base> base = choose_base(components);
+  if (!base) return base.error();
 
   FileIndex index;
-  index.header = describe(input, *base);
-  const Bytes body = write_body(input, *base, file_ids, index);
+  index.header = describe(input, components, *base);
+  const Result<Bytes> body = write_body(input, components, *base, index);
+  if (!body) return body.error();
 
   Bytes file = write_hashed_prologue(index);
   // The default limits of a reader are the writer's, too.
   if (const auto readable = parse_prologue(file); !readable) return readable.error();
-  file.insert(file.end(), body.begin(), body.end());
+  file.insert(file.end(), body->begin(), body->end());
   return file;
 }
 

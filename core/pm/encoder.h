@@ -26,10 +26,18 @@ struct EncodeInput {
 };
 
 /// The whole file. Renames vertices: the base's come first, in the order Draco gives them, then
-/// the others in the order in which they are split off. Chunks grow from 4 KiB by half to 256 KiB;
-/// that bound doubles until the index fits the prologue. The header's box is that of the full mesh;
-/// coarser ones may exceed it where the log relocates. Fails if Draco does, or (out_of_resources)
-/// if the mesh exceeds the default DecodeLimits. Deterministic.
+/// the others in the order in which they arrive or are split off. Chunks grow from 4 KiB by half to
+/// 256 KiB; that bound doubles until the index fits the prologue, and, beside it, a base of up to 8
+/// KiB the first 16 KiB. The header's box is that of the full mesh; coarser ones may exceed it
+/// where the log relocates.
+///
+/// Of several components the base holds the largest, and with it as many of the next, by the
+/// diagonals of their bounding boxes, as keep it at 2,000 faces and 8 KiB. The others begin chunks,
+/// of which they take about half, ahead of their first splits: small before, each chunk has one new
+/// component at least as long as any are left.
+///
+/// Fails if Draco does, or (out_of_resources) if the mesh exceeds the default DecodeLimits.
+/// Deterministic.
 Result<Bytes> encode(const EncodeInput& input);
 
 }  // namespace pmesh

@@ -12,15 +12,17 @@ namespace {
 
 constexpr std::size_t kFixedHeaderBytes = 168;  // up to the strings
 constexpr std::size_t kRowBytes = 56;
+constexpr std::size_t kArrivalBytes = 8;  // of a row of a file with arrivals, besides
 constexpr std::size_t kCrcOffset = 20;
 constexpr std::uint8_t kBaseCodecDraco = 1;
 constexpr std::uint8_t kGraphLinear = 0;
-constexpr std::uint8_t kSplitCodecPlain = 0;
+constexpr std::uint8_t kSplitCodec = 0;
 constexpr std::uint16_t kFlagBorders = 1u << 0;
 constexpr std::uint16_t kFlagRelocations = 1u << 1;
 constexpr std::uint16_t kFlagErrorsMeasured = 1u << 2;
-// Bit 3 is reserved for new components in chunks.
-constexpr std::uint16_t kKnownFlags = kFlagBorders | kFlagRelocations | kFlagErrorsMeasured;
+constexpr std::uint16_t kFlagArrivals = 1u << 3;
+constexpr std::uint16_t kKnownFlags =
+    kFlagBorders | kFlagRelocations | kFlagErrorsMeasured | kFlagArrivals;
 
 // Bytes of prologue that tell its whole length: magic to chunk count.
 constexpr std::size_t kSizingBytes = 20;
@@ -28,8 +30,11 @@ constexpr std::size_t kSizingBytes = 20;
 std::uint16_t flags_of(const FileHeader& header) {
   return static_cast<std::uint16_t>((header.has_borders ? kFlagBorders : 0) |
                                     (header.has_relocations ? kFlagRelocations : 0) |
-                                    (header.errors_measured ? kFlagErrorsMeasured : 0));
+                                    (header.errors_measured ? kFlagErrorsMeasured : 0) |
+                                    (header.has_arrivals ? kFlagArrivals : 0));
 }
+
+std::size_t row_size(bool has_arrivals) { return kRowBytes + (has_arrivals ? kArrivalBytes : 0); }
 
 std::size_t header_size(const FileHeader& header) {
   return kFixedHeaderBytes + 3 + header.metric.size() + header.parameters.size() +
@@ -78,7 +83,7 @@ void put_header(ByteWriter& writer, const FileIndex& index) {
   writer.put(ByteView(kMagic));
   writer.put(kFormatVersion);
   writer.put(static_cast<std::uint16_t>(header_size(h)));
-  writer.put(static_cast<std::uint16_t>(kRowBytes));
+  writer.put(static_cast<std::uint16_t>(row_size(h.has_arrivals)));
   writer.put(flags_of(h));
   writer.put(static_cast<std::uint32_t>(index.chunks.size()));
   writer.put(std::uint32_t{0});  // CRC, filled in when the rest stands
@@ -92,7 +97,7 @@ void put_header(ByteWriter& writer, const FileIndex& index) {
   writer.put(h.base_crc);
   writer.put(kBaseCodecDraco);
   writer.put(kGraphLinear);
-  writer.put(kSplitCodecPlain);
+  writer.put(kSplitCodec);
   writer.put(h.lattice.bits);
   for (const double d : {h.lattice.origin.x, h.lattice.origin.y, h.lattice.origin.z}) writer.put(d);
   writer.put(h.lattice.step);
@@ -105,7 +110,7 @@ void put_header(ByteWriter& writer, const FileIndex& index) {
   put_string(writer, h.unit);
 }
 
-void put_row(ByteWriter& writer, const ChunkRow& row) {
+void put_row(ByteWriter& writer, const ChunkRow& row, bool has_arrivals) {
   writer.put(row.offset);
   writer.put(row.bytes);
   writer.put(row.crc);
@@ -114,9 +119,12 @@ void put_row(ByteWriter& writer, const ChunkRow& row) {
   writer.put(row.faces);
   writer.put(row.max_error);
   writer.put(row.rms_error);
+  if (!has_arrivals) return;
+  writer.put(static_cast<std::uint32_t>(row.arrivals.vertices));
+  writer.put(static_cast<std::uint32_t>(row.arrivals.faces));
 }
 
-ChunkRow get_row(ByteReader& reader) {
+ChunkRow get_row(ByteReader& reader, bool has_arrivals) {
   ChunkRow row;
   row.offset = reader.get<std::uint64_t>();
   row.bytes = reader.get<std::uint32_t>();
@@ -127,6 +135,10 @@ ChunkRow get_row(ByteReader& reader) {
   row.faces = reader.get<std::uint64_t>();
   row.max_error = reader.get_double();
   row.rms_error = reader.get_double();
+  if (has_arrivals) {
+    row.arrivals.vertices = reader.get<std::uint32_t>();
+    row.arrivals.faces = reader.get<std::uint32_t>();
+  }
   return row;
 }
 
@@ -137,6 +149,7 @@ struct Layout {
   std::uint16_t flags = 0;
   std::uint32_t chunk_count = 0;
 
+  bool has_arrivals() const { return (flags & kFlagArrivals) != 0; }
   std::uint64_t prologue_bytes() const {
     return header_bytes + std::uint64_t{row_bytes} * chunk_count;
   }
@@ -155,7 +168,7 @@ Result<Layout> parse_layout(ByteReader& reader) {
   layout.flags = reader.get<std::uint16_t>();
   layout.chunk_count = reader.get<std::uint32_t>();
   if (layout.header_bytes < kFixedHeaderBytes + 3 || layout.header_bytes > kMaxHeaderBytes ||
-      layout.row_bytes < kRowBytes || layout.row_bytes > kMaxRowBytes ||
+      layout.row_bytes < row_size(layout.has_arrivals()) || layout.row_bytes > kMaxRowBytes ||
       layout.prologue_bytes() > kMaxPrologueBytes) {
     return damaged("header: its sizes are out of range");
   }
@@ -167,6 +180,7 @@ Status parse_header(ByteReader& reader, const Layout& layout, FileHeader& h) {
   h.has_borders = (layout.flags & kFlagBorders) != 0;
   h.has_relocations = (layout.flags & kFlagRelocations) != 0;
   h.errors_measured = (layout.flags & kFlagErrorsMeasured) != 0;
+  h.has_arrivals = layout.has_arrivals();
   reader.get<std::uint32_t>();  // CRC, checked by the caller
   const ByteView hash = reader.take(h.content_hash.size());
   std::copy(hash.begin(), hash.end(), h.content_hash.begin());
@@ -178,7 +192,7 @@ Status parse_header(ByteReader& reader, const Layout& layout, FileHeader& h) {
   h.base_bytes = reader.get<std::uint64_t>();
   h.base_crc = reader.get<std::uint32_t>();
   if (reader.get<std::uint8_t>() != kBaseCodecDraco || reader.get<std::uint8_t>() != kGraphLinear ||
-      reader.get<std::uint8_t>() != kSplitCodecPlain) {
+      reader.get<std::uint8_t>() != kSplitCodec) {
     return damaged("header: unknown codec");
   }
   h.lattice.bits = reader.get<std::uint8_t>();
@@ -223,6 +237,15 @@ Status check_lattice(const FileHeader& h) {
   return {};
 }
 
+// A face has three corners, and every vertex has a face.
+bool is_possible(const MeshCounts& counts) {
+  return counts.faces > 0 && counts.vertices >= 3 && counts.vertices <= 3 * counts.faces;
+}
+
+std::uint64_t most_mesh_bytes(std::uint64_t faces) {
+  return kMaxBaseBytesPerFace * faces + kMaxBaseBytesOverhead;
+}
+
 Status check_counts(const FileHeader& h, const DecodeLimits& limits) {
   constexpr std::uint64_t kNameable = kNoIndex / 3;  // by 32-bit half-edges
   if (h.faces > std::min(limits.max_faces, kNameable) || h.base_faces > limits.max_base_faces) {
@@ -230,20 +253,41 @@ Status check_counts(const FileHeader& h, const DecodeLimits& limits) {
                                                   std::to_string(h.base_faces) +
                                                   " in the base) exceed the limit"};
   }
-  // A face has three corners, and every vertex has a face.
-  if (h.base_faces == 0 || h.base_vertices < 3 || h.base_vertices > 3 * h.base_faces) {
-    return damaged("header: impossible counts of the base mesh");
-  }
+  if (!is_possible(h.base_counts())) return damaged("header: impossible counts of the base mesh");
   if (h.base_faces > kMaxBaseFacesPerByte * h.base_bytes ||
-      h.base_bytes > kMaxBaseBytesPerFace * h.base_faces + kMaxBaseBytesOverhead) {
+      h.base_bytes > most_mesh_bytes(h.base_faces)) {
     return damaged("header: the base's bytes do not fit its faces");
   }
   if (h.file_bytes >> 62 != 0) return damaged("header: impossible file size");
   return {};
 }
 
-// Sections follow each other without gaps; counts grow as splits can make them grow.
-Status check_rows(const FileIndex& index) {
+// Whether the chunk's counts can grow as its row says, and in that many bytes. Precondition: they
+// grow.
+bool can_grow(const FileIndex& index, std::size_t chunk, const DecodeLimits& limits) {
+  const FileHeader& h = index.header;
+  const ChunkRow& row = index.chunks[chunk];
+  const MeshCounts arrivals = row.arrivals;
+  if (arrivals.vertices > row.vertices - index.vertices_after(chunk) ||
+      arrivals.faces > row.faces - index.faces_after(chunk)) {
+    return false;
+  }
+  const auto [splits, faces] = index.added_by_splits(chunk);
+  std::uint64_t most_bytes = kMaxChunkOverhead + h.max_split_bytes() * splits;
+  if (arrivals != MeshCounts{}) {
+    if (!is_possible(arrivals) || arrivals.faces > kMaxBaseFacesPerByte * row.bytes ||
+        arrivals.faces > limits.max_base_faces) {
+      return false;
+    }
+    most_bytes += most_mesh_bytes(arrivals.faces);
+  }
+  const bool fits_splits =
+      h.has_borders ? faces >= splits && faces <= 2 * splits : faces == 2 * splits;
+  return fits_splits && splits <= std::uint64_t{8} * row.bytes && row.bytes <= most_bytes;
+}
+
+// Sections follow each other without gaps; counts grow as arrivals and splits can make them grow.
+Status check_rows(const FileIndex& index, const DecodeLimits& limits) {
   const FileHeader& h = index.header;
   std::uint64_t end = index.base_end(), vertices = h.base_vertices, faces = h.base_faces;
   for (std::size_t c = 0; c < index.chunks.size(); ++c) {
@@ -253,11 +297,7 @@ Status check_rows(const FileIndex& index) {
     if (row.vertices <= vertices || row.faces <= faces) {
       return damaged(where + ": counts do not grow");
     }
-    const std::uint64_t splits = row.vertices - vertices, added = row.faces - faces;
-    if (added > 2 * splits || (h.has_borders ? added < splits : added != 2 * splits) ||
-        splits > std::uint64_t{8} * row.bytes || row.bytes > h.max_split_bytes() * splits) {
-      return damaged(where + ": impossible counts");
-    }
+    if (!can_grow(index, c, limits)) return damaged(where + ": impossible counts");
     const auto is_length = [](double d) { return std::isfinite(d) && d >= 0; };
     if (h.errors_measured && !(is_length(row.max_error) && is_length(row.rms_error))) {
       return damaged(where + ": an error is not a number");
@@ -285,7 +325,7 @@ std::string to_hex(const ContentHash& hash) {
 }
 
 std::size_t prologue_size(const FileIndex& index) {
-  return header_size(index.header) + kRowBytes * index.chunks.size();
+  return header_size(index.header) + row_size(index.header.has_arrivals) * index.chunks.size();
 }
 
 Bytes write_prologue(FileIndex& index) {
@@ -301,7 +341,7 @@ Bytes write_prologue(FileIndex& index) {
   Bytes bytes;
   ByteWriter writer(bytes);
   put_header(writer, index);
-  for (const ChunkRow& row : index.chunks) put_row(writer, row);
+  for (const ChunkRow& row : index.chunks) put_row(writer, row, index.header.has_arrivals);
   const std::uint32_t crc = prologue_crc(bytes);
   for (std::size_t i = 0; i < 4; ++i)
     bytes[kCrcOffset + i] = static_cast<std::uint8_t>(crc >> 8 * i);
@@ -330,11 +370,11 @@ Result<std::optional<FileIndex>> parse_prologue(ByteView prefix, const DecodeLim
   if (Status s = parse_header(reader, *layout, index.header); !s) return s.error();
   for (std::uint32_t c = 0; c < layout->chunk_count; ++c) {
     ByteReader row(prologue.subspan(layout->header_bytes + std::size_t{layout->row_bytes} * c));
-    index.chunks.push_back(get_row(row));
+    index.chunks.push_back(get_row(row, layout->has_arrivals()));
   }
   if (Status s = check_lattice(index.header); !s) return s.error();
   if (Status s = check_counts(index.header, limits); !s) return s.error();
-  if (Status s = check_rows(index); !s) return s.error();
+  if (Status s = check_rows(index, limits); !s) return s.error();
   return std::optional<FileIndex>(std::move(index));
 }
 

@@ -3,7 +3,8 @@
 //
 //   [header | index]  at most 16 KiB together: the prologue
 //   [base mesh]       Draco
-//   [chunk 0] ... [chunk n-1]   vertex splits; any prefix that ends at a chunk is a valid LOD
+//   [chunk 0] ... [chunk n-1]   new components, if any, and vertex splits; any prefix that ends
+//                     at a chunk is a valid LOD
 //   [tail]            empty in version 0
 //
 // Threads: plain values; no shared state.
@@ -33,8 +34,9 @@ inline constexpr std::size_t kMaxPrologueBytes = 16 * 1024;
 inline constexpr std::uint64_t kMaxBaseFacesPerByte = 64;
 inline constexpr std::uint64_t kMaxBaseBytesPerFace = 64;
 inline constexpr std::uint64_t kMaxBaseBytesOverhead = 4096;
-inline constexpr std::uint64_t kMaxSplitBytes = 32;
-inline constexpr std::uint64_t kMaxRelocatingSplitBytes = 64;
+inline constexpr std::uint64_t kMaxSplitBytes = 64;
+inline constexpr std::uint64_t kMaxRelocatingSplitBytes = 96;
+inline constexpr std::uint64_t kMaxChunkOverhead = 64;
 
 /// The first 16 bytes of SHA-256 over header and index, with this field zero.
 using ContentHash = std::array<std::uint8_t, 16>;
@@ -43,6 +45,12 @@ std::string to_hex(const ContentHash& hash);
 
 /// The first 8 bytes of SHA-256 of a base mesh or chunk.
 using SectionDigest = std::array<std::uint8_t, 8>;
+
+struct MeshCounts {
+  std::uint64_t vertices = 0;
+  std::uint64_t faces = 0;
+  friend bool operator==(const MeshCounts&, const MeshCounts&) = default;
+};
 
 struct FileHeader {
   ContentHash content_hash{};
@@ -59,9 +67,12 @@ struct FileHeader {
   bool has_borders = false;      ///< Border splits may occur.
   bool has_relocations = false;  ///< Splits may move the vertex that they keep.
   bool errors_measured = false;  ///< The rows' max_error and rms_error hold.
+  bool has_arrivals = false;     ///< Chunks may begin with new components.
   std::string metric;            ///< Decimation metric by name, e.g. "melod".
   std::string parameters;        ///< Its parameters, e.g. "lambda=10".
   std::string unit;              ///< Unit of length, e.g. "m"; empty if not known.
+
+  MeshCounts base_counts() const { return {base_vertices, base_faces}; }
 
   /// No split of this file takes more.
   std::uint64_t max_split_bytes() const {
@@ -75,7 +86,7 @@ struct FileHeader {
   }
 };
 
-/// One chunk of vertex splits, and the mesh after it.
+/// One chunk, and the mesh after it.
 struct ChunkRow {
   std::uint64_t offset = 0;  ///< From the file's start.
   std::uint32_t bytes = 0;
@@ -85,6 +96,8 @@ struct ChunkRow {
   std::uint64_t faces = 0;
   double max_error = -1;  ///< Two-sided Hausdorff distance to the original; negative: not measured.
   double rms_error = -1;
+  /// Of the new components that the chunk begins with; zeros if it has none.
+  MeshCounts arrivals = {};
 
   std::uint64_t end() const { return offset + bytes; }
 };
@@ -106,13 +119,19 @@ struct FileIndex {
   std::uint64_t faces_after(std::size_t chunk_count) const {
     return chunk_count == 0 ? header.base_faces : chunks[chunk_count - 1].faces;
   }
+  /// What the splits of a chunk add: each one vertex, and two faces or, on a border, one.
+  MeshCounts added_by_splits(std::size_t chunk) const {
+    const ChunkRow& row = chunks[chunk];
+    return {row.vertices - vertices_after(chunk) - row.arrivals.vertices,
+            row.faces - faces_after(chunk) - row.arrivals.faces};
+  }
 };
 
 /// What a decoder takes from a file at most. A file that claims more is refused
 /// (out_of_resources) before any memory is taken for it. A decoded face costs about 50 bytes.
 struct DecodeLimits {
   std::uint64_t max_faces = 400'000'000;
-  std::uint64_t max_base_faces = 20'000'000;
+  std::uint64_t max_base_faces = 20'000'000;  ///< Of the base, and of a chunk's new components.
   /// Off only for fuzzing the parts behind the checksums.
   bool verify_checksums = true;
 };

@@ -1,60 +1,69 @@
-// What the split coder and decoder share: how many bits each number takes. docs/pm-format.md
-// section "Chunk" specifies it. Split codec 0: plain records packed in bits.
+// What the split coder has learnt so far in a file, and the parameters of the batch at hand: the
+// contexts of every kind of decision (docs/pm-format.md, "Contexts"). Encoder and decoder keep one
+// each, alike at every split.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 
-#include "core/base/vec3.h"
+#include "core/pm/adaptive_bit.h"
+#include "core/pm/fan_choice.h"
+#include "core/pm/patch.h"
 
 namespace pmesh {
 
-/// Bits that name one of `count` things.
-inline int bits_for(std::uint32_t count) { return static_cast<int>(std::bit_width(count - 1)); }
-
-/// Exp-Golomb parameter of the number of moved faces (half of all vertices move three to five).
-inline constexpr int kMovedFacesOrder = 2;
-
-/// Chooses the Rice parameter of a coordinate difference from the mean of the earlier ones.
-class RiceModel {
- public:
-  explicit RiceModel(int lattice_bits) : scaled_mean_(kScale << std::max(0, lattice_bits - 4)) {}
-
-  int parameter() const {
-    return std::max(0, static_cast<int>(std::bit_width(scaled_mean_ / kScale)) - 1);
-  }
-  void update(std::uint32_t value) {
-    scaled_mean_ += std::min(value, kLargest) - scaled_mean_ / kScale;
-  }
-
- private:
-  static constexpr std::uint32_t kScale = 16;          // the mean is taken over about 16 values
-  static constexpr std::uint32_t kLargest = 1u << 27;  // so that scaled_mean_ cannot overflow
-  std::uint32_t scaled_mean_;
+/// What an encoder sends ahead of a batch.
+struct BatchParameters {
+  Predictor predictor;
+  FanWeights fan;
+  friend bool operator==(const BatchParameters&, const BatchParameters&) = default;
 };
 
-/// A model for each axis.
-using PointModel = std::array<RiceModel, 3>;
-inline PointModel make_point_model(int lattice_bits) {
-  const RiceModel model(lattice_bits);
-  return {model, model, model};
+/// Before a file's first batch.
+inline BatchParameters initial_parameters() {
+  constexpr Predictor::Weights kWeights{{4, -2, 2, 32}, {27, 4}};
+  return {{kWeights, kWeights, kWeights, {32, 32}}, {{72, -74, 96}}};
 }
 
-/// Where a kept vertex is expected after its split: merged vertices lie near the middle of their
-/// edge, so as far from there as the added vertex, on the other side.
-inline Vec3i predicted_kept(Vec3i merged, Vec3i added) { return 2 * merged - added; }
+/// Weights lie in [-127, 127].
+inline constexpr std::int64_t kMostWeight = 127;
 
-/// A quotient of this many is followed by the value itself in 32 bits.
-inline constexpr std::uint32_t kRiceEscape = 24;
+/// A batch of fewer splits than one in this many vertices names its vertices by gaps, a larger one
+/// by a mark at every vertex.
+inline constexpr std::uint32_t kSparseBatch = 32;
 
-/// Signed to unsigned: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
-inline std::uint32_t zigzag(std::int32_t value) {
-  return (static_cast<std::uint32_t>(value) << 1) ^ static_cast<std::uint32_t>(value >> 31);
-}
-inline std::int32_t unzigzag(std::uint32_t value) {
-  return static_cast<std::int32_t>(value >> 1) ^ -static_cast<std::int32_t>(value & 1);
-}
+/// Bit lengths of a number around the one that its class makes likely.
+struct LengthModel {
+  AdaptiveBit above;
+  std::array<AdaptiveBit, 8> up, down;
+};
+
+struct SplitModel {
+  static constexpr std::uint32_t kValences = 16, kFree = 12, kFanSizes = 10;
+
+  // Marks: border or not, valence, free faces.
+  std::array<std::array<std::array<AdaptiveBit, kFree>, kValences>, 2> mark;
+  std::array<AdaptiveBit, 32> gap_length;  // of a sparse batch
+
+  // Cut neighbours.
+  std::array<AdaptiveBit, kValences> interior;  // of a border vertex's split; by valence
+  AdaptiveBit last;                             // border_last rather than border_first
+  // Is the fan larger than this? Interior or not, size so far, valence, largest possible.
+  std::array<std::array<std::array<std::array<AdaptiveBit, kFanSizes>, kValences>, kFanSizes>, 2>
+      larger;
+  // Is it this candidate? Its rank, its lead over the next and over the one after.
+  std::array<std::array<std::array<AdaptiveBit, 4>, 8>, 4> candidate;
+
+  // Positions and relocations: tangential and normal parts.
+  struct Residuals {
+    std::array<std::array<LengthModel, 64>, 2> length;  // by class
+    std::array<std::array<AdaptiveBit, 32>, 2> second;  // the bit below the leading one; by length
+  };
+  Residuals added, kept;
+
+  std::array<AdaptiveBit, 8> weight_length;  // of a change of a parameter
+  BatchParameters parameters = initial_parameters();
+};
 
 }  // namespace pmesh

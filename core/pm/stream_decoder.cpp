@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/base/crc32c.h"
-#include "core/pm/split_decoder.h"
 
 namespace pmesh {
 
@@ -71,20 +70,13 @@ Status StreamDecoder::take_base(ByteView section) {
   if (limits_.verify_checksums && crc32c(section) != header.base_crc) {
     return damaged("base mesh: wrong checksum");
   }
-  Result<LatticeMesh> base = decode_base_(section, header);
+  const Result<LatticeMesh> base =
+      decode_mesh(decode_base_, section, header.base_counts(), header.lattice);
   if (!base) return prefixed("base mesh", base.error());
-  if (base->positions.size() != header.base_vertices ||
-      base->triangles.size() != header.base_faces) {
-    return damaged("base mesh: its counts differ from the header's");
-  }
-  for (const Vec3i p : base->positions) {
-    if (((p.x | p.y | p.z) >> header.lattice.bits) != 0) {
-      return damaged("base mesh: a vertex lies off the lattice");
-    }
-  }
   Result<RefinableMesh> mesh = RefinableMesh::from_base(*base);
   if (!mesh) return mesh.error();
   mesh_ = std::move(*mesh);
+  splits_.emplace(*mesh_);
   return {};
 }
 
@@ -95,20 +87,32 @@ Status StreamDecoder::take_chunk(ByteView section) {
     return damaged(where + ": wrong checksum");
   }
   mesh_->set_finest();
-  const std::uint32_t splits_before = mesh_->applied_splits();
-  Status decoded =
-      decode_chunk(section, static_cast<std::uint32_t>(row.vertices - mesh_->vertex_count()),
-                   index_->header, *mesh_);
+  const std::uint32_t steps_before = mesh_->applied_steps();
+  Status decoded = decode_chunk(section, chunk_count_);
   if (decoded.ok() && mesh_->face_count() != row.faces) {
     decoded = damaged("its face count differs from the index");
   }
   if (!decoded) {
-    mesh_->set_splits(splits_before);
+    mesh_->set_steps(steps_before);
     mesh_->forget_finer();
     return prefixed(where, decoded.error());
   }
   ++chunk_count_;
   return {};
+}
+
+Status StreamDecoder::decode_chunk(ByteView section, std::size_t chunk) {
+  const ChunkRow& row = index_->chunks[chunk];
+  const Result<ChunkParts> parts = chunk_parts(section, row);
+  if (!parts) return parts.error();
+  if (row.arrivals.faces > 0) {
+    const Result<LatticeMesh> components =
+        decode_mesh(decode_base_, parts->components, row.arrivals, index_->header.lattice);
+    if (!components) return prefixed("new components", components.error());
+    if (Status arrived = mesh_->append(*components); !arrived) return arrived;
+  }
+  const auto splits = static_cast<std::uint32_t>(index_->added_by_splits(chunk).vertices);
+  return splits_->decode(parts->splits, splits, index_->header, *mesh_);
 }
 
 }  // namespace pmesh

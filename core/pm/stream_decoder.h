@@ -12,13 +12,11 @@
 #include "core/base/result.h"
 #include "core/mesh/indexed_mesh.h"
 #include "core/pm/format.h"
+#include "core/pm/mesh_section.h"
+#include "core/pm/split_decoder.h"
 #include "core/refine/refinable_mesh.h"
 
 namespace pmesh {
-
-/// Decodes a base mesh (Draco) to lattice positions and triangles. Given by the caller, because
-/// the decoder knows no third party: natively decode_base of core/pm/base_codec.h.
-using BaseDecoder = Result<LatticeMesh> (*)(ByteView bytes, const FileHeader& header);
 
 class StreamDecoder {
  public:
@@ -52,11 +50,13 @@ class StreamDecoder {
   void take_whole_section(ByteView section);
   Status take_base(ByteView section);
   Status take_chunk(ByteView section);
+  Status decode_chunk(ByteView section, std::size_t chunk);
 
   BaseDecoder decode_base_;
   DecodeLimits limits_;
   std::optional<FileIndex> index_;
   std::optional<RefinableMesh> mesh_;
+  std::optional<SplitDecoder> splits_;
   std::size_t chunk_count_ = 0;
   std::uint64_t usable_bytes_ = 0;
   Bytes pending_;

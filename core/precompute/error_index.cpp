@@ -68,10 +68,7 @@ Status write_error_index(Bytes& file, const IndexedMesh& original, unsigned thre
   if (!decoded) return decoded;
 
   FileIndex index = decoder.index();
-  const auto plan = [&](std::size_t c) {
-    walk->plan_to(
-        static_cast<std::uint32_t>(index.chunks[c].vertices - index.header.base_vertices));
-  };
+  const auto plan = [&](std::size_t c) { walk->plan_to(index.chunks[c].vertices); };
   if (!index.chunks.empty()) plan(index.chunks.size() - 1);
   for (std::size_t c = index.chunks.size(); c-- > 0;) {
     walk->follow();

@@ -1,6 +1,7 @@
 #include "core/precompute/error_walk.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -26,8 +27,14 @@ ErrorWalk::ErrorWalk(RefinableMesh& mesh, const Lattice& lattice, const IndexedM
   }
 }
 
-void ErrorWalk::plan_to(std::uint32_t splits) {
-  while (mesh_.applied_splits() > splits) plan_collapse();
+void ErrorWalk::plan_to(std::uint64_t vertices) {
+  while (mesh_.vertex_count() > vertices && mesh_.applied_steps() > 0) {
+    if (mesh_.last_is_arrival()) {
+      plan_leave();
+    } else {
+      plan_collapse();
+    }
+  }
 }
 
 void ErrorWalk::follow() {
@@ -54,7 +61,7 @@ void ErrorWalk::plan_collapse() {
   const VertexId kept = mesh_.corners()[3 * (std::size_t{mesh_.face_count()} - 1) + corner];
   gather(removed, kept);
   const double gap = gap_of(removed, kept);
-  mesh_.set_splits(mesh_.applied_splits() - 1);
+  mesh_.set_steps(mesh_.applied_steps() - 1);
   // If nothing but an edge is left of the star, its other face has what was charged to the star.
   if (star_.size() == 1) around_.push_back(HalfEdgeMesh::face(site.half_edge).value);
 
@@ -63,6 +70,15 @@ void ErrorWalk::plan_collapse() {
   exchanges_.push_back({gap, mesh_.face_count(), begin, around_begin});
   exchanged_.insert(exchanged_.end(), star_.begin(), star_.end());
   exchanged_.insert(exchanged_.end(), around_.begin(), around_.end());
+}
+
+// All that was charged to the components is charged to the base's first face, at an unknown
+// distance.
+void ErrorWalk::plan_leave() {
+  mesh_.set_steps(mesh_.applied_steps() - 1);
+  const auto begin = static_cast<std::uint32_t>(exchanged_.size());
+  exchanges_.push_back({std::numeric_limits<double>::infinity(), mesh_.face_count(), begin, begin});
+  exchanged_.push_back(0);
 }
 
 void ErrorWalk::gather(VertexId removed, VertexId kept) {

@@ -27,9 +27,9 @@ class ErrorWalk {
   ErrorWalk(RefinableMesh& mesh, const Lattice& lattice, const IndexedMesh& original,
             const UnitFrame& frame);
 
-  /// Coarsens the mesh and takes note of what each collapse exchanges. Precondition: `splits` is
-  /// not above mesh.applied_splits().
-  void plan_to(std::uint32_t splits);
+  /// Coarsens the mesh to the LOD of at most that many vertices, or to the base, and takes note of
+  /// what each collapse exchanges.
+  void plan_to(std::uint64_t vertices);
   /// Brings errors() up to the LOD that stands.
   void follow();
 
@@ -37,7 +37,8 @@ class ErrorWalk {
   FaceErrors& errors() { return errors_; }
 
  private:
-  // A collapse. Its faces are those in `exchanged_` from one entry's begin to the next one's.
+  // A collapse, or the leave of components that arrived. Its faces are those in `exchanged_` from
+  // one entry's begin to the next one's.
   struct Exchange {
     double gap;
     std::uint32_t faces_after;  // of the mesh
@@ -45,6 +46,7 @@ class ErrorWalk {
   };
 
   void plan_collapse();
+  void plan_leave();
   void gather(VertexId removed, VertexId kept);
   bool gather_star(VertexId center, VertexId first);
   void gather_around();

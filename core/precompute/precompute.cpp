@@ -55,14 +55,13 @@ Result<Decimation> decimate_mesh(const IndexedMesh& mesh, const AnyMetric& metri
   if (!connectivity) return prefixed("after cleaning", connectivity.error());
   DecimateOptions decimation;
   decimation.metric = metric;
+  decimation.schedule = options.schedule;
   decimation.base_faces = options.base_faces;
   decimation.threads = options.threads;
   decimation.progress = [&](std::uint64_t done, std::uint64_t total) {
     progress(PrecomputePhase::decimate, static_cast<double>(done) / static_cast<double>(total));
   };
   Decimation result = decimate(std::move(*connectivity), mesh.positions, decimation);
-  report.base_faces = result.report.faces;
-  report.base_vertices = result.report.vertices;
   report.planarity_relaxed_at = result.report.planarity_relaxed_at_faces;
   report.fold_over_relaxed_at = result.report.fold_over_relaxed_at_faces;
   return result;
@@ -70,18 +69,20 @@ Result<Decimation> decimate_mesh(const IndexedMesh& mesh, const AnyMetric& metri
 
 // Over every position that a vertex has at any level: placed vertices may leave the mesh's box.
 Result<Lattice> lattice_over_all(const IndexedMesh& mesh, const Decimation& decimation,
-                                 std::optional<int> bits) {
+                                 const Precision& precision) {
   std::vector<Vec3d> reach = mesh.positions;
   reach.insert(reach.end(), decimation.positions.begin(), decimation.positions.end());
   const std::vector<Vec3d>& before = decimation.log.kept_before;
   reach.insert(reach.end(), before.begin(), before.end());
-  return choose_lattice(mesh, reach, bits);
+  return choose_lattice(mesh, reach, precision);
 }
 
 // What the header says of the file just encoded.
 void report_file(const Bytes& file, PrecomputeReport& report) {
   const auto index = parse_prologue(file);
   report.chunks = (*index)->chunks.size();
+  report.base_faces = (*index)->header.base_faces;
+  report.base_vertices = (*index)->header.base_vertices;
   report.base_bytes = (*index)->header.base_bytes;
   report.file_bytes = file.size();
   report.hash = to_hex((*index)->header.content_hash);
@@ -95,14 +96,14 @@ Result<PrecomputeReport> run(const PrecomputeOptions& options, const PrecomputeP
   if (Status probed = probe_output(options); !probed) return probed.error();
   Result<IndexedMesh> mesh = import_and_clean(options, progress, report);
   if (!mesh) return mesh.error();
-  if (const Result<Lattice> possible = choose_lattice(*mesh, mesh->positions, options.lattice_bits);
+  if (const Result<Lattice> possible = choose_lattice(*mesh, mesh->positions, options.precision);
       !possible) {  // known before the long work
     return prefixed(options.input, possible.error());
   }
 
   const Result<Decimation> decimation = decimate_mesh(*mesh, *metric, options, progress, report);
   if (!decimation) return decimation.error();
-  const Result<Lattice> lattice = lattice_over_all(*mesh, *decimation, options.lattice_bits);
+  const Result<Lattice> lattice = lattice_over_all(*mesh, *decimation, options.precision);
   if (!lattice) return prefixed(options.input, lattice.error());
   report.lattice = *lattice;
 

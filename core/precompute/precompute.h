@@ -7,10 +7,12 @@
 #include <string>
 
 #include "core/base/result.h"
+#include "core/decimate/decimate.h"
 #include "core/files/atomic_file.h"
 #include "core/io/clean.h"
 #include "core/mesh/lattice.h"
 #include "core/metrics/table.h"
+#include "core/precompute/quantise.h"
 
 namespace pmesh {
 
@@ -19,8 +21,8 @@ struct PrecomputeOptions {
   std::string output;  ///< Its name must end in .pmesh, which servers and clients go by.
   std::string metric{metric_table().front().name};
   std::string metric_parameters;  ///< As make_metric() takes them: "lambda=10".
-  /// kMinLatticeBits to kMaxLatticeBits; else chosen by the mesh.
-  std::optional<int> lattice_bits;
+  Precision precision;
+  Schedule schedule = Schedule::batched;
   std::uint32_t base_faces = 200;  ///< Decimation stops here, or where topology ends it.
   /// Whether the index gets the measured error of each chunk end.
   bool measure = true;

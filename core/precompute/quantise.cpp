@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace pmesh {
 namespace {
@@ -33,8 +34,10 @@ std::vector<PlacedTriangle> placed_triangles(const LatticeMesh& mesh) {
 }  // namespace
 
 Result<Lattice> choose_lattice(const IndexedMesh& mesh, const std::vector<Vec3d>& reach,
-                               std::optional<int> bits) {
-  if (bits) return make_lattice(reach, *bits);
+                               const Precision& precision) {
+  assert(!precision.bits || !precision.tolerance);
+  if (precision.bits) return make_lattice(reach, *precision.bits);
+  if (precision.tolerance) return make_lattice_within(reach, *precision.tolerance);
   int fewer = default_lattice_bits(mesh);
   Result<Lattice> lattice = make_lattice(reach, fewer);
   while (!lattice && fewer > kMinLatticeBits) lattice = make_lattice(reach, --fewer);

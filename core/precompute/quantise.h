@@ -10,11 +10,17 @@
 
 namespace pmesh {
 
-/// The lattice over `reach`, all the positions that it is to hold: of `bits` bits if given, else of
-/// default_lattice_bits() of `mesh`, or as many bits below that as double precision can tell apart
-/// at these coordinates. Precondition: neither is empty.
+/// How fine a lattice is: at most one of these, or neither for default_lattice_bits().
+struct Precision {
+  std::optional<int> bits;          ///< kMinLatticeBits to kMaxLatticeBits.
+  std::optional<double> tolerance;  ///< As in make_lattice_within(), in the mesh's units.
+};
+
+/// The lattice over `reach`, all the positions that it is to hold, as fine as asked for; by
+/// default of default_lattice_bits() of `mesh`, or as many bits below that as double precision can
+/// tell apart at these coordinates. Precondition: neither is empty.
 Result<Lattice> choose_lattice(const IndexedMesh& mesh, const std::vector<Vec3d>& reach,
-                               std::optional<int> bits);
+                               const Precision& precision);
 
 /// The lattice points nearest to `positions`.
 std::vector<Vec3i> quantise(const std::vector<Vec3d>& positions, const Lattice& lattice);

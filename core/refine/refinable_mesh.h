@@ -1,11 +1,13 @@
-// A progressive mesh in memory: a base, the vertex splits decoded so far, and the one level of
-// detail (LOD) that stands at the moment. Moves to any other LOD exactly, both ways.
+// A progressive mesh in memory: a base, the steps of refinement decoded so far, and the one level
+// of detail (LOD) that stands at the moment. Moves to any other LOD exactly, both ways. A step is a
+// vertex split or the arrival of new components.
 //
-// The LOD after k splits uses exactly the ids 0..vertices-1 and 0..faces-1 and is a pure function
-// of file and k, whether it was reached by refining or by coarsening.
+// The LOD after k steps uses exactly the ids 0..vertices-1 and 0..faces-1 and is a pure function
+// of file and k, whether it was reached by refining or by coarsening. Every step adds vertices and
+// faces.
 //
-// Memory: about 36 bytes a face, 42 if splits relocate. Threads: const members may be called at the
-// same time; the rest need the mesh to themselves.
+// Memory: about 36 bytes a face, 42 if splits relocate; 28 more a face that arrived. Threads: const
+// members may be called at the same time; the rest need the mesh to themselves.
 #pragma once
 
 #include <cstdint>
@@ -42,27 +44,36 @@ class RefinableMesh {
   /// is not possible. Precondition: the finest LOD stands.
   Status append(const VertexSplit& split);
 
-  /// Takes memory for a full mesh of this size at once. Precondition: vertices >= vertex_count().
+  /// Adds the arrival of `components` as the next finer step and takes it: their vertices and faces
+  /// get the next ids, in their order. Fails, changing nothing, as from_base(), or if they have no
+  /// face. Precondition: the finest LOD stands.
+  Status append(const LatticeMesh& components);
+
+  /// Takes memory for a full mesh of this size at once. Precondition: vertices >= known_vertices().
   void reserve(std::uint32_t vertices, std::uint32_t faces);
 
-  /// Forgets the splits that the LOD that stands does not use.
+  /// Forgets the steps that the LOD that stands does not use.
   void forget_finer();
 
-  /// Splits known, and splits applied in the LOD that stands.
-  std::uint32_t known_splits() const { return static_cast<std::uint32_t>(sites_.size()); }
-  std::uint32_t applied_splits() const { return applied_; }
-  bool is_finest() const { return applied_splits() == known_splits(); }
+  /// Steps known, and steps taken in the LOD that stands.
+  std::uint32_t known_steps() const { return static_cast<std::uint32_t>(sites_.size()); }
+  std::uint32_t applied_steps() const { return applied_; }
+  bool is_finest() const { return applied_steps() == known_steps(); }
+  /// Vertices of the finest LOD.
+  std::uint32_t known_vertices() const { return static_cast<std::uint32_t>(positions_.size()); }
 
-  /// Of the last split that the LOD that stands uses: where it was, and how it moved its kept
-  /// vertex. Precondition: applied_splits() > 0.
+  /// Whether the last step that the LOD that stands uses is an arrival. Precondition:
+  /// applied_steps() > 0.
+  bool last_is_arrival() const { return is_arrival(applied_ - 1); }
+  /// Of that step, if it is a split: where it was, and how it moved its kept vertex.
   const SplitSite& last_site() const { return sites_[applied_ - 1]; }
   Vec3i last_relocation() const {
     return relocations_.empty() ? Vec3i{} : relocations_[applied_ - 1];
   }
 
-  /// Moves to the LOD of `count` splits. Precondition: count <= known_splits().
-  void set_splits(std::uint32_t count);
-  void set_finest() { set_splits(known_splits()); }
+  /// Moves to the LOD of `count` steps. Precondition: count <= known_steps().
+  void set_steps(std::uint32_t count);
+  void set_finest() { set_steps(known_steps()); }
   /// Moves to the largest known LOD with at most `count` faces (vertices); to the base if even
   /// that has more.
   void set_faces(std::uint64_t count);
@@ -82,18 +93,20 @@ class RefinableMesh {
 
  private:
   RefinableMesh() = default;
-  std::uint32_t base_vertices() const {
-    return static_cast<std::uint32_t>(positions_.size()) - known_splits();
-  }
+  bool is_arrival(std::uint32_t step) const { return !sites_[step].half_edge.valid(); }
+  std::uint32_t added_vertices() const;  // by the next step
+  std::uint32_t added_faces() const;
   void refine_once();
   void coarsen_once();
-  void append_relocation(Vec3i relocation);
+  void append_step(const SplitSite& site, Vec3i relocation);
 
   HalfEdgeMesh connectivity_;
-  std::vector<Vec3i> positions_;  // of every known vertex: the finer ones stay while coarse
-  std::vector<SplitSite> sites_;
-  std::vector<Vec3i> relocations_;  // by split; empty as long as none relocates
+  std::vector<Vec3i> positions_;    // of every known vertex: the finer ones stay while coarse
+  std::vector<SplitSite> sites_;    // by step; an arrival's half-edge is invalid
+  std::vector<Vec3i> relocations_;  // by step; empty as long as none relocates
+  std::vector<HalfEdgeMesh> arrivals_;
   std::uint32_t applied_ = 0;
+  std::uint32_t arrived_ = 0;  // arrivals among the steps applied
 };
 
 }  // namespace pmesh

@@ -39,6 +39,12 @@ expect 2 "$pmesh"
 expect 2 "$pmesh" polish
 expect 2 "$pmesh" precompute sphere.obj
 expect 2 "$pmesh" precompute sphere.obj -o out.pmesh --quantization 99
+for tolerance in 0 -1 nan inf 1mm; do
+  expect 2 "$pmesh" precompute sphere.obj -o out.pmesh "--tolerance=$tolerance"
+  expect_message tolerance
+done
+expect 2 "$pmesh" precompute sphere.obj -o out.pmesh --tolerance 0.1 --quantization 12
+expect_message tolerance
 expect 2 "$pmesh" precompute sphere.obj -o out.pmesh --metric beauty
 expect 2 "$pmesh" extract sphere.pmesh --faces 10 --ratio 0.5 -o out.ply
 expect 2 "$pmesh" extract sphere.pmesh --faces ten -o out.ply

@@ -45,7 +45,8 @@ inspect() {
   check '[.chunks as $c | range(1; $c | length) | $c[.].offset == $c[. - 1].offset +
     $c[. - 1].bytes] | all' "$work/info.json"
   check '(.chunks | length) == 0 or (.chunks[-1] | .offset + .bytes) == .file_bytes' "$work/info.json"
-  jq -s -e '.[0] as $made | .[1] as $read | ["faces", "vertices", "base_faces", "file_bytes"] |
+  jq -s -e '.[0] as $made | .[1] as $read |
+    ["faces", "vertices", "base_faces", "file_bytes", "quantization", "step"] |
     all(. as $key | $made[$key] == $read[$key])' "$work/precompute.json" "$work/info.json" \
     >/dev/null || fail "precompute --json and info --json disagree"
 }

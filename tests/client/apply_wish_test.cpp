@@ -5,6 +5,7 @@
 #include "core/pm/base_codec.h"
 #include "core/pm/stream_decoder.h"
 #include "tests/client/sample.h"
+#include "tests/fixtures/shapes.h"
 
 namespace pmesh {
 namespace {
@@ -36,7 +37,7 @@ TEST(ApplyWish, GivesTheLargestLodWithAtMostThatManyFaces) {
   StreamDecoder decoder = decoded();
   const AppliedWish applied = apply("faces=1001", decoder);
   EXPECT_LE(applied.faces, 1001u);
-  decoder.mesh().set_splits(decoder.mesh().applied_splits() + 1);
+  decoder.mesh().set_steps(decoder.mesh().applied_steps() + 1);
   EXPECT_GT(decoder.mesh().face_count(), 1001u);
 }
 
@@ -117,6 +118,37 @@ TEST(ApplyWish, NeverNeedsMoreThanTheBytesItResolvesTo) {
     EXPECT_EQ(applied.faces, expected.faces) << query;
     EXPECT_EQ(applied.vertices, expected.vertices) << query;
     EXPECT_EQ(applied.reached, expected.reached) << query;
+  }
+}
+
+// Closed pieces: no border splits, so that counts resolve exactly.
+const Bytes& closed_pieces() {
+  static const Bytes file = [] {
+    IndexedMesh mesh;
+    for (int k = 0; k < 1500; ++k) {
+      const IndexedMesh piece = k % 3 == 0 ? shapes::icosphere(1) : shapes::octahedron();
+      mesh = shapes::joined(std::move(mesh),
+                            shapes::moved(piece, {3.0 * (k % 40), 3.0 * (k / 40), 0}));
+    }
+    return test::make_pm_file(mesh);
+  }();
+  return file;
+}
+
+TEST(ApplyWish, TakesNewComponentsAsTheWishResolves) {
+  StreamDecoder whole(decode_base);
+  ASSERT_TRUE(whole.feed(closed_pieces()).ok());
+  ASSERT_TRUE(whole.index().header.has_arrivals);
+  for (const char* key : {"faces=", "vertices="}) {
+    for (int count = 500; count < 30'000; count += 251) {
+      const std::string query = key + std::to_string(count);
+      const Resolution resolution = *resolve(wish(query.c_str()), whole.index());
+      const AppliedWish applied = apply(query.c_str(), whole);
+      EXPECT_EQ(applied.faces, resolution.faces) << query;
+      EXPECT_EQ(applied.vertices, resolution.vertices) << query;
+      EXPECT_EQ(applied.reached, resolution.reached) << query;
+      EXPECT_LE(applied.vertices, whole.index().vertices_after(resolution.chunk_count)) << query;
+    }
   }
 }
 

@@ -19,7 +19,7 @@ namespace pmesh::test {
 
 Bytes make_pm_file(const IndexedMesh& mesh, std::uint32_t base_faces) {
   const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-  const Lattice lattice = *make_lattice(mesh.positions, 12);
+  const Lattice lattice = *make_lattice(mesh.positions, 20);
   std::vector<Vec3i> points;
   for (const Vec3d& p : mesh.positions) points.push_back(lattice.quantise(p));
   DecimateOptions options;

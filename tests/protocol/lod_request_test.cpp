@@ -10,6 +10,7 @@ namespace pmesh {
 namespace {
 
 using testing::sample_index;
+using testing::sample_index_with_arrivals;
 using testing::sample_index_with_borders;
 using testing::sample_index_with_errors;
 
@@ -113,6 +114,23 @@ TEST(Resolve, BordersGiveUpperBounds) {
             (Resolution{.end = 200, .chunk_count = 2, .faces = 27, .vertices = 17}));
   EXPECT_EQ(resolved("vertices=20", index),  // 6 splits inside and 2 on the border at most
             (Resolution{.end = 200, .chunk_count = 2, .faces = 34, .vertices = 20}));
+}
+
+TEST(Resolve, NewComponentsComeWholeOrNotAtAll) {
+  const FileIndex index = sample_index_with_arrivals();
+  const Resolution without{.end = 170, .chunk_count = 1, .faces = 20, .vertices = 12};
+  const Resolution with{.end = 200, .chunk_count = 2, .faces = 28, .vertices = 16};
+  EXPECT_EQ(resolved("faces=27", index), without);
+  EXPECT_EQ(resolved("vertices=15", index), without);
+  EXPECT_EQ(resolved("faces=28", index), with);
+  EXPECT_EQ(resolved("faces=29", index), with);
+  EXPECT_EQ(resolved("vertices=16", index), with);
+}
+
+TEST(Resolve, SplitsFollowNewComponents) {
+  const Resolution lod{.end = 200, .chunk_count = 2, .faces = 32, .vertices = 18};
+  EXPECT_EQ(resolved("faces=33", sample_index_with_arrivals()), lod);
+  EXPECT_EQ(resolved("vertices=18", sample_index_with_arrivals()), lod);
 }
 
 TEST(Resolve, MoreThanTheMeshHasIsTheWholeFile) {

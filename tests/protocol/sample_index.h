@@ -36,6 +36,14 @@ inline FileIndex sample_index_with_borders() {
   return index;
 }
 
+/// The first, but of the second chunk's growth 4 vertices and 8 faces are new components.
+inline FileIndex sample_index_with_arrivals() {
+  FileIndex index = sample_index();
+  index.header.has_arrivals = true;
+  index.chunks[1].arrivals = {.vertices = 4, .faces = 8};
+  return index;
+}
+
 /// The first with measured errors 4, 1 and 2: the third chunk makes it worse. Its diagonal is
 /// 0.5 * length(4, 2, 0) = sqrt(5).
 inline FileIndex sample_index_with_errors() {

@@ -108,6 +108,7 @@ template <class M>
 void expect_the_same_collapses(const shapes::Shape& shape) {
   SCOPED_TRACE(std::string(M::kName) + " on " + shape.name);
   DecimateOptions options;
+  options.schedule = Schedule::exact;
   options.metric = M();
   options.base_faces = 0;
   const Decimation result = decimate(half_edges(shape.mesh), shape.mesh.positions, options);

@@ -195,6 +195,7 @@ TEST(FeatureSensitive, BorderVertexStaysOnItsLine) {
 TEST(FeatureSensitive, FlatSheetKeepsItsCorners) {
   const IndexedMesh mesh = shapes::grid(8, 8);
   DecimateOptions options;
+  options.schedule = Schedule::exact;
   options.base_faces = 8;
   options.metric = FeatureSensitive();
   const Decimation result = decimate(half_edges(mesh), mesh.positions, options);
@@ -212,6 +213,7 @@ TEST(FeatureSensitive, FlatSheetKeepsItsCorners) {
 TEST(FeatureSensitive, LogDoesNotDependOnThreads) {
   const IndexedMesh mesh = shapes::bumped(shapes::torus(24, 12), 0.05);
   DecimateOptions options;
+  options.schedule = Schedule::exact;
   options.base_faces = 0;
   options.metric = FeatureSensitive(0.03, true);
   options.threads = 1;
@@ -226,6 +228,7 @@ TEST(FeatureSensitive, SurvivesFacesWithoutArea) {
   IndexedMesh mesh = shapes::icosphere(2);
   for (Vec3d& p : mesh.positions) p = {p.x, 0, 0};
   DecimateOptions options;
+  options.schedule = Schedule::exact;
   options.base_faces = 0;
   options.metric = FeatureSensitive(0.03, true);
   const Decimation result = decimate(half_edges(mesh), mesh.positions, options);

@@ -16,6 +16,7 @@ namespace {
 
 DecimateOptions triangle_options(std::uint32_t base_faces) {
   DecimateOptions options;
+  options.schedule = Schedule::exact;
   options.metric = TriangleCollapse();
   options.base_faces = base_faces;
   return options;

@@ -31,9 +31,9 @@ std::vector<IndexedMesh> levels_of(const EncodedShape& shape, std::uint32_t coun
   EXPECT_TRUE(decoder.feed(shape.file));
   RefinableMesh& mesh = decoder.mesh();
   std::vector<IndexedMesh> levels;
-  const std::uint32_t splits = mesh.known_splits();
+  const std::uint32_t splits = mesh.known_steps();
   for (std::uint32_t i = 0; i <= count; ++i) {
-    mesh.set_splits(splits * i / count);
+    mesh.set_steps(splits * i / count);
     levels.push_back(in_space(mesh.snapshot(), shape.lattice));
   }
   return levels;

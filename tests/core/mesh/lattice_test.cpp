@@ -70,6 +70,43 @@ TEST(Lattice, RejectsWhatIsNotFinite) {
   EXPECT_FALSE(make_lattice({{-1.7e308, 0, 0}, {1.7e308, 0, 0}}, 12));
 }
 
+TEST(LatticeWithin, MovesNoCoordinateByMoreThanItsTolerance) {
+  const IndexedMesh mesh = shapes::bumped(shapes::torus(20, 12), 0.1);
+  for (const double tolerance : {0.1, 0.01, 1e-4, 1e-7}) {
+    const Lattice lattice = make_lattice_within(mesh.positions, tolerance).value();
+    for (const Vec3d& p : mesh.positions) {
+      const Vec3d moved = lattice.position(lattice.quantise(p)) - p;
+      EXPECT_LE(std::max({std::abs(moved.x), std::abs(moved.y), std::abs(moved.z)}),
+                tolerance + 1e-15);
+    }
+  }
+}
+
+TEST(LatticeWithin, TakesTheCoarsestStepAndTheFewestBits) {
+  const Lattice lattice = make_lattice_within({{0, 0, 0}, {1024, 3, 5}}, 0.5).value();
+  EXPECT_EQ(lattice.step, 1);
+  EXPECT_EQ(lattice.bits, 11);  // 0 to 1024
+  EXPECT_EQ(lattice.quantise({1024, 3, 5}), (Vec3i{1024, 3, 5}));
+  EXPECT_EQ(make_lattice_within({{0, 0, 0}, {1023, 3, 5}}, 0.5).value().bits, 10);
+}
+
+TEST(LatticeWithin, KeepsTheFewestBitsWhateverTheTolerance) {
+  const Lattice lattice = make_lattice_within({{0, 0, 0}, {15, 3, 5}}, 1e300).value();
+  EXPECT_EQ(lattice.bits, kMinLatticeBits);
+  EXPECT_EQ(lattice.step, 1);
+}
+
+TEST(LatticeWithin, RejectsMoreBitsThanThereAre) {
+  const Result<Lattice> lattice = make_lattice_within({{0, 0, 0}, {1, 0, 0}}, 1e-10);
+  ASSERT_FALSE(lattice);
+  EXPECT_EQ(lattice.error().message,
+            "a tolerance of 1e-10 takes more than 30 bits a coordinate; at 30 bits it is 4.66e-10");
+}
+
+TEST(LatticeWithin, RejectsStepsFinerThanDoubles) {
+  EXPECT_FALSE(make_lattice_within({{1e6, 0, 0}, {1e6 + 1e-3, 0, 0}}, 1e-11));
+}
+
 TEST(LatticeBits, FollowTheMedianEdge) {
   // 24 steps an edge: an edge of 1/64 of the side wants 1,536 steps, 11 bits.
   EXPECT_EQ(default_lattice_bits(shapes::grid(64, 64)), 11);

@@ -13,11 +13,8 @@ LatticeMesh on_lattice(const IndexedMesh& mesh, int bits) {
   return {quantise(mesh.positions, *make_lattice(mesh.positions, bits)), mesh.triangles};
 }
 
-FileHeader header_of(const LatticeMesh& mesh) {
-  FileHeader header;
-  header.base_vertices = mesh.positions.size();
-  header.base_faces = mesh.triangles.size();
-  return header;
+MeshCounts counts_of(const LatticeMesh& mesh) {
+  return {mesh.positions.size(), mesh.triangles.size()};
 }
 
 TEST(BaseCodec, KeepsEveryTriangleOfEveryManifold) {
@@ -25,7 +22,7 @@ TEST(BaseCodec, KeepsEveryTriangleOfEveryManifold) {
     const LatticeMesh mesh = on_lattice(shape.mesh, 14);
     const auto coded = encode_base(mesh);
     ASSERT_TRUE(coded.ok()) << shape.name << ": " << coded.error().message;
-    const auto decoded = decode_base(coded->bytes, header_of(mesh));
+    const auto decoded = decode_base(coded->bytes, counts_of(mesh));
     ASSERT_TRUE(decoded.ok()) << shape.name << ": " << decoded.error().message;
     EXPECT_TRUE(same_triangles(mesh, *decoded)) << shape.name;
     EXPECT_EQ(decoded->positions, coded->decoded.positions);
@@ -58,16 +55,16 @@ TEST(BaseCodec, UsesEdgeBreakerBecauseItsOrderIsFound) {
 TEST(BaseCodec, RefusesCountsOtherThanTheHeaders) {
   const LatticeMesh mesh = on_lattice(shapes::icosphere(2), 10);
   const auto coded = encode_base(mesh);
-  FileHeader header = header_of(mesh);
-  --header.base_faces;
-  EXPECT_EQ(decode_base(coded->bytes, header).error().message,
+  MeshCounts counts = counts_of(mesh);
+  --counts.faces;
+  EXPECT_EQ(decode_base(coded->bytes, counts).error().message,
             "Draco's counts differ from the header's");
 }
 
 TEST(BaseCodec, RefusesWhatIsNotDraco) {
-  const FileHeader header = header_of(on_lattice(shapes::tetrahedron(), 10));
-  EXPECT_EQ(decode_base(as_bytes("nonsense"), header).error().message, "not a Draco 2.2 mesh");
-  EXPECT_FALSE(decode_base({}, header).ok());
+  const MeshCounts counts = counts_of(on_lattice(shapes::tetrahedron(), 10));
+  EXPECT_EQ(decode_base(as_bytes("nonsense"), counts).error().message, "not a Draco 2.2 mesh");
+  EXPECT_FALSE(decode_base({}, counts).ok());
 }
 
 TEST(BaseCodec, AnswersEveryTruncationWithAnError) {
@@ -75,7 +72,7 @@ TEST(BaseCodec, AnswersEveryTruncationWithAnError) {
   const auto coded = encode_base(mesh);
   for (std::size_t n = 0; n < coded->bytes.size(); ++n) {
     const Bytes cut(coded->bytes.begin(), coded->bytes.begin() + static_cast<std::ptrdiff_t>(n));
-    const auto decoded = decode_base(cut, header_of(mesh));
+    const auto decoded = decode_base(cut, counts_of(mesh));
     EXPECT_TRUE(!decoded.ok() || decoded->triangles.size() == mesh.triangles.size()) << n;
   }
 }

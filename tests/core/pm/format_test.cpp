@@ -150,7 +150,7 @@ TEST(Prologue, RefusesMoreBytesThanItsCountsCanNeed) {
   EXPECT_EQ(error_of([](FileIndex& i) { i.header.base_bytes = 0; }), misfit);
   EXPECT_EQ(error_of([](FileIndex& i) { i.header.base_bytes = std::uint64_t{1} << 40; }), misfit);
   EXPECT_EQ(error_of([](FileIndex& i) { i.header.base_bytes = 64 * 4 + 4097; }), misfit);
-  EXPECT_EQ(error_of([](FileIndex& i) { i.chunks[0].bytes = 65; }),
+  EXPECT_EQ(error_of([](FileIndex& i) { i.chunks[0].bytes = 64 + 2 * 64 + 1; }),
             "index row 0: impossible counts");
 }
 
@@ -161,10 +161,10 @@ TEST(Prologue, AllowsLongerSplitsOnlyWithRelocations) {
       i.header.has_relocations = relocations;
     });
   };
-  EXPECT_EQ(error_with_bytes(2 * 32, false), "none");
-  EXPECT_EQ(error_with_bytes(2 * 32 + 1, false), "index row 0: impossible counts");
-  EXPECT_EQ(error_with_bytes(2 * 64, true), "none");
-  EXPECT_EQ(error_with_bytes(2 * 64 + 1, true), "index row 0: impossible counts");
+  EXPECT_EQ(error_with_bytes(64 + 2 * 64, false), "none");
+  EXPECT_EQ(error_with_bytes(64 + 2 * 64 + 1, false), "index row 0: impossible counts");
+  EXPECT_EQ(error_with_bytes(64 + 2 * 96, true), "none");
+  EXPECT_EQ(error_with_bytes(64 + 2 * 96 + 1, true), "index row 0: impossible counts");
 }
 
 TEST(Prologue, RefusesStringsThatCannotBePrinted) {

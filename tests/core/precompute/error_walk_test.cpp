@@ -24,9 +24,9 @@ class Walk {
     walk_.emplace(decoder_.mesh(), shape.lattice, original, frame_);
   }
 
-  std::uint32_t splits() { return decoder_.mesh().applied_splits(); }
-  void coarsen_to(std::uint32_t splits) {
-    walk_->plan_to(splits);
+  std::uint32_t vertices() { return decoder_.mesh().vertex_count(); }
+  void coarsen_to(std::uint32_t vertices) {
+    walk_->plan_to(vertices);
     walk_->follow();
   }
   FaceErrors& errors() { return walk_->errors(); }
@@ -81,9 +81,9 @@ class Walk {
 
 void expect_sound(const IndexedMesh& original, const EncodedShape& shape) {
   Walk walk(original, shape);
-  const std::uint32_t splits = walk.splits();
+  const std::uint32_t vertices = walk.vertices();
   for (int tenths = 10; tenths >= 0; tenths -= 2) {
-    walk.coarsen_to(splits * static_cast<std::uint32_t>(tenths) / 10);
+    walk.coarsen_to(vertices * static_cast<std::uint32_t>(tenths) / 10);
     walk.expect_bounds_hold(shape.name + " at " + std::to_string(tenths) + " tenths");
   }
 }
@@ -108,7 +108,7 @@ TEST(ErrorWalk, BoundsEveryFaceOfARoughSurface) {
 TEST(ErrorWalk, StaysNearTheTruth) {
   const IndexedMesh original = shapes::bumped(shapes::icosphere(5), 0.1);
   Walk walk(original, encode_shape("bumped sphere", original));
-  walk.coarsen_to(walk.splits() / 3);
+  walk.coarsen_to(walk.vertices() / 3);
   EXPECT_LE(walk.largest(), 8 * walk.sampled_maximum());
 }
 

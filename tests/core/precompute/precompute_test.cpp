@@ -95,9 +95,8 @@ TEST_F(Precompute, GoesThroughItsPhasesInOrder) {
                          PrecomputePhase::done}));
 }
 
-TEST_F(Precompute, TheIndexHoldsErrorsThatNoMeterExceeds) {
-  const IndexedMesh mesh = shapes::bumped(shapes::icosphere(5), 0.02);
-  const PrecomputeOptions options = options_for(mesh);
+void expect_errors_that_no_meter_exceeds(const IndexedMesh& mesh,
+                                         const PrecomputeOptions& options) {
   ASSERT_TRUE(precompute(options, kSilent).ok());
   const Result<PmFile> opened = PmFile::open(options.output);
   ASSERT_TRUE(opened.ok());
@@ -116,6 +115,18 @@ TEST_F(Precompute, TheIndexHoldsErrorsThatNoMeterExceeds) {
     EXPECT_LE(row.max_error, 1.25 * seen.max()) << c;
     EXPECT_NEAR(row.rms_error, seen.rms(), 0.05 * seen.rms()) << c;
   }
+}
+
+TEST_F(Precompute, TheIndexHoldsErrorsThatNoMeterExceeds) {
+  const IndexedMesh mesh = shapes::bumped(shapes::icosphere(5), 0.02);
+  expect_errors_that_no_meter_exceeds(mesh, options_for(mesh));
+}
+
+TEST_F(Precompute, TheErrorsOfComponentsThatArriveCountTheirAbsence) {
+  IndexedMesh mesh = shapes::components(3000);
+  mesh = shapes::joined(std::move(mesh),
+                        shapes::moved(shapes::bumped(shapes::icosphere(5), 0.1), {-3, 0, 0}));
+  expect_errors_that_no_meter_exceeds(mesh, options_for(mesh));
 }
 
 TEST_F(Precompute, LeavesErrorsUnmeasuredIfAskedTo) {

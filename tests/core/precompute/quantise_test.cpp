@@ -25,19 +25,27 @@ TEST(SameTriangles, SeesOrientationPositionAndCount) {
 }
 
 TEST(ChooseLattice, TakesTheBitsAskedFor) {
-  const auto lattice = choose_lattice(shapes::icosphere(3), shapes::icosphere(3).positions, 11);
+  const auto lattice = choose_lattice(shapes::icosphere(3), shapes::icosphere(3).positions,
+                                      {.bits = 11, .tolerance = {}});
   ASSERT_TRUE(lattice.ok());
   EXPECT_EQ(lattice->bits, 11);
 }
 
+TEST(ChooseLattice, TakesTheToleranceAskedFor) {
+  const auto lattice = choose_lattice(shapes::icosphere(3), shapes::icosphere(3).positions,
+                                      {.bits = {}, .tolerance = 0.01});
+  ASSERT_TRUE(lattice.ok());
+  EXPECT_EQ(lattice->step, 0.02);
+}
+
 TEST(ChooseLattice, RefusesMoreBitsThanDoublesCanTellApart) {
   const IndexedMesh far = shapes::moved(shapes::icosphere(2), {1e15, 0, 0});
-  EXPECT_FALSE(choose_lattice(far, far.positions, 20).ok());
+  EXPECT_FALSE(choose_lattice(far, far.positions, {.bits = 20, .tolerance = {}}).ok());
 }
 
 TEST(ChooseLattice, ByItselfStaysWithinWhatDoublesCanTellApart) {
   const IndexedMesh far = shapes::moved(shapes::icosphere(2), {1e15, 0, 0});
-  const auto lattice = choose_lattice(far, far.positions, std::nullopt);
+  const auto lattice = choose_lattice(far, far.positions, {});
   ASSERT_TRUE(lattice.ok()) << lattice.error().message;
   EXPECT_GE(lattice->step, 0.125);
 }
@@ -45,7 +53,7 @@ TEST(ChooseLattice, ByItselfStaysWithinWhatDoublesCanTellApart) {
 TEST(ChooseLattice, KeepsAMeshFarFromTheOrigin) {
   const IndexedMesh near = shapes::icosphere(4);
   const IndexedMesh far = shapes::moved(near, {5e6, 5e6, 0});
-  const auto lattice = choose_lattice(far, far.positions, std::nullopt);
+  const auto lattice = choose_lattice(far, far.positions, {});
   ASSERT_TRUE(lattice.ok());
   const std::vector<Vec3i> points = quantise(far.positions, *lattice);
   for (std::size_t v = 0; v < points.size(); ++v) {

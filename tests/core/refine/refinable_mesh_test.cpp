@@ -25,12 +25,12 @@ bool same(const LatticeMesh& a, const LatticeMesh& b) {
 TEST(RefinableMesh, RefiningAndCoarseningToTheSameLodGiveTheSameIdsAndPositions) {
   for (const EncodedShape& shape : encoded_manifolds()) {
     RefinableMesh up = decoded(shape), down = decoded(shape);
-    up.set_splits(0);
-    const std::uint32_t step = std::max(1u, up.known_splits() / 37);
-    for (std::uint32_t k = 0; k < up.known_splits(); k += step) {
-      up.set_splits(k);
+    up.set_steps(0);
+    const std::uint32_t step = std::max(1u, up.known_steps() / 37);
+    for (std::uint32_t k = 0; k < up.known_steps(); k += step) {
+      up.set_steps(k);
       down.set_finest();
-      down.set_splits(k);
+      down.set_steps(k);
       ASSERT_TRUE(same(up.snapshot(), down.snapshot())) << shape.name << " at " << k;
     }
   }
@@ -39,9 +39,9 @@ TEST(RefinableMesh, RefiningAndCoarseningToTheSameLodGiveTheSameIdsAndPositions)
 TEST(RefinableMesh, EveryLodIsAManifold) {
   for (const EncodedShape& shape : encoded_manifolds()) {
     RefinableMesh mesh = decoded(shape);
-    const std::uint32_t step = std::max(1u, mesh.known_splits() / 19);
-    for (std::uint32_t k = 0; k <= mesh.known_splits(); k += step) {
-      mesh.set_splits(k);
+    const std::uint32_t step = std::max(1u, mesh.known_steps() / 19);
+    for (std::uint32_t k = 0; k <= mesh.known_steps(); k += step) {
+      mesh.set_steps(k);
       const Status valid = mesh.connectivity().validate();
       ASSERT_TRUE(valid.ok()) << shape.name << " at " << k << ": " << valid.error().message;
     }
@@ -51,13 +51,13 @@ TEST(RefinableMesh, EveryLodIsAManifold) {
 TEST(RefinableMesh, AFaceWishGivesTheLargestLodWithAtMostThatManyFaces) {
   for (const EncodedShape& shape : encoded_manifolds()) {
     RefinableMesh mesh = decoded(shape), next = mesh;
-    mesh.set_splits(0);
+    mesh.set_steps(0);
     const std::uint32_t base = mesh.face_count();
     for (std::uint32_t faces = base; faces <= shape.quantised.triangles.size(); faces += 13) {
       mesh.set_faces(faces);
       ASSERT_LE(mesh.face_count(), faces) << shape.name;
       if (mesh.is_finest()) continue;
-      next.set_splits(mesh.applied_splits() + 1);
+      next.set_steps(mesh.applied_steps() + 1);
       ASSERT_GT(next.face_count(), faces) << shape.name;
     }
   }
@@ -66,10 +66,10 @@ TEST(RefinableMesh, AFaceWishGivesTheLargestLodWithAtMostThatManyFaces) {
 TEST(RefinableMesh, AWishBelowTheBaseGivesTheBase) {
   RefinableMesh mesh = decoded(encode_shape("ball", shapes::icosphere(3)));
   mesh.set_faces(1);
-  EXPECT_EQ(mesh.applied_splits(), 0u);
+  EXPECT_EQ(mesh.applied_steps(), 0u);
   mesh.set_finest();
   mesh.set_vertices(1);
-  EXPECT_EQ(mesh.applied_splits(), 0u);
+  EXPECT_EQ(mesh.applied_steps(), 0u);
 }
 
 TEST(RefinableMesh, AVertexWishIsMetExactly) {
@@ -95,7 +95,7 @@ TEST(RefinableMesh, ARelocationIsUndoneWithItsSplit) {
   RefinableMesh mesh = moved_tetrahedron();
   EXPECT_EQ(mesh.positions()[0], (Vec3i{5, 0, 7}));
   for (const std::uint32_t splits : {1u, 0u, 1u}) {
-    mesh.set_splits(splits);
+    mesh.set_steps(splits);
     EXPECT_EQ(mesh.positions()[0], (Vec3i{0, 0, 0}));
   }
   mesh.set_finest();
@@ -104,12 +104,12 @@ TEST(RefinableMesh, ARelocationIsUndoneWithItsSplit) {
 
 TEST(RefinableMesh, AForgottenRelocationMayBeReplacedByAnother) {
   RefinableMesh mesh = moved_tetrahedron();
-  mesh.set_splits(1);
+  mesh.set_steps(1);
   mesh.forget_finer();
   ASSERT_TRUE(mesh.append({{HalfEdgeId(3), 1, SplitKind::interior}, {3, 3, 3}, {8, 8, 8}}).ok());
   EXPECT_EQ(mesh.positions()[0], (Vec3i{8, 8, 8}));
   EXPECT_EQ(mesh.positions()[5], (Vec3i{3, 3, 3}));
-  mesh.set_splits(0);
+  mesh.set_steps(0);
   EXPECT_EQ(mesh.positions()[0], (Vec3i{0, 0, 0}));
 }
 

@@ -1,0 +1,70 @@
+"""Bytes until the mesh is within 1% of the diagonal of the original, everywhere and both ways."""
+
+import draco
+import tables  # of bench/peers
+
+BITS = 12  # of the PM file; Draco takes what is best for it
+DRACO_BITS = range(8, 13)
+GOAL = 0.01  # of the diagonal
+FEWEST = 16  # faces that no mesh here gets by with
+
+
+def measure(lab, mesh):
+    file = lab.pm_file(mesh, BITS)
+    info = lab.info(file)
+    return {"prologue_bytes": info["prologue_bytes"],
+            "pm": base(lab, mesh, file, info) or first_chunk_end(info),
+            "draco": least_draco(lab, mesh, info["faces"])}
+
+
+def base(lab, mesh, file, info):
+    """The base, if it meets the goal: its error is not in the index."""
+    distance = lab.distance(mesh, lab.extracted(file, info["base_faces"]))["max_relative"]
+    return distance < GOAL and {"bytes": info["base_bytes"], "faces": info["base_faces"]}
+
+
+def first_chunk_end(info):
+    """The first chunk at whose end the file's own error index meets the goal; None if none does."""
+    for chunk in info["chunks"]:
+        if chunk["max_error"] < GOAL * info["bbox_diagonal"]:
+            return {"bytes": chunk["offset"] + chunk["bytes"] - info["prologue_bytes"],
+                    "faces": chunk["faces"]}
+    return None
+
+
+def least_draco(lab, mesh, faces):
+    """The smallest one-shot file that meets the goal, over all bits; None if there is none."""
+    best = None
+    for bits in DRACO_BITS:
+        best = least_at(lab, mesh, bits, faces, best)
+    return best
+
+
+def least_at(lab, mesh, bits, faces, best):
+    """`best`, or a smaller file of so many bits that meets the goal. Doubles the faces until the
+    goal is met, then bisects. Errors are not monotone, so a still smaller file may exist."""
+    bad, count = FEWEST, 2 * FEWEST
+    while bad < count <= faces:
+        level = draco.one_shot(lab, mesh, count, bits)
+        too_large = best is not None and level["bytes"] >= best["bytes"]
+        if too_large or draco.distance(lab, mesh, level["file"])["max_relative"] < GOAL:
+            best, faces = best if too_large else level, count
+        else:
+            bad = count
+        narrow = faces - bad <= max(1, faces // 64)
+        count = bad if narrow else min(2 * bad, (bad + faces) // 2)
+    return best
+
+
+def report(figures, _counted, _plots):
+    def row(mesh, f):
+        pm, best = f["pm"], f["draco"]
+        return [mesh, f"{f['prologue_bytes']:,}",
+                f"{pm['bytes']:,}" if pm else "-", f"{pm['faces']:,}" if pm else "-",
+                f"{best['bytes']:,}" if best else "-", f"{best['faces']:,}" if best else "-",
+                str(best["bits"]) if best else "-",
+                f"{pm['bytes'] / best['bytes']:.2f}" if pm and best else "-"]
+
+    return {"one_percent": tables.table(
+        ["mesh", "header and index", "pmesh bytes", "faces", "Draco bytes", "faces", "bits",
+         "ratio"], [row(mesh, f) for mesh, f in figures.items()])}

@@ -1,0 +1,399 @@
+// One template for both ways of coding a batch of splits: with a ChunkReader it decodes, with a
+// ChunkWriter it encodes. docs/pm-format.md, section "Batch", specifies what it does.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/pm/batch_mesh.h"
+#include "core/pm/fan_choice.h"
+#include "core/pm/format.h"
+#include "core/pm/patch.h"
+#include "core/pm/split_model.h"
+#include "core/pm/split_section.h"
+#include "core/refine/refinable_mesh.h"
+
+namespace pmesh {
+
+template <class Coder>
+class SplitCoder {
+ public:
+  SplitCoder(Coder& coder, const FileHeader& header, SplitModel& model, const RefinableMesh& mesh,
+             BatchMesh& state)
+      : coder_(coder), header_(header), model_(model), mesh_(mesh), state_(state) {}
+
+  /// Decodes the next batch, of at most `most` splits, into `batch`, or encodes `batch`, whose
+  /// splits are in the order of their kept vertices, with `parameters`. Fills in the costs.
+  /// Afterwards the batch's faces are covered: BatchMesh::apply() comes next.
+  Status code(std::vector<BatchSplit>& batch, std::uint32_t most,
+              const BatchParameters& parameters = {}) {
+    batch_ = &batch;
+    coder_.enter(SplitSection::batches);
+    const std::uint32_t count = code_count(static_cast<std::uint32_t>(batch.size()));
+    if (count == 0 || count > most) return bad_input("a batch has more splits than its chunk");
+    if constexpr (Coder::kDecodes) batch.clear();
+    code_parameters(parameters);
+    const std::uint32_t vertices = mesh_.vertex_count();
+    Status status =
+        std::uint64_t{kSparseBatch} * count < vertices ? code_sparse(count) : code_dense(count);
+    if (status.ok() && failed()) return bad_input("the chunk ends inside a batch");
+    return status;
+  }
+
+ private:
+  bool failed() const {
+    if constexpr (Coder::kDecodes) return coder_.failed();
+    return false;
+  }
+
+  // Elias gamma.
+  std::uint32_t code_count(std::uint32_t count) {
+    const int bits = static_cast<int>(
+        coder_.raw(5, static_cast<std::uint32_t>(count == 0 ? 0 : bit_length(count) - 1)));
+    return (std::uint32_t{1} << bits) | coder_.raw(bits, count & ((std::uint32_t{1} << bits) - 1));
+  }
+
+  void code_parameters(const BatchParameters& wanted) {
+    BatchParameters& now = model_.parameters;
+    const auto code_all = [this](auto& current, const auto& target) {
+      for (std::size_t i = 0; i < current.size(); ++i) code_weight(current[i], target[i]);
+    };
+    const auto code_weights = [&](Predictor::Weights& current, const Predictor::Weights& target) {
+      code_all(current.tangential, target.tangential);
+      code_all(current.normal, target.normal);
+    };
+    code_weights(now.predictor.small, wanted.predictor.small);
+    code_weights(now.predictor.large, wanted.predictor.large);
+    if (header_.has_borders) code_weights(now.predictor.border, wanted.predictor.border);
+    if (header_.has_relocations) code_all(now.predictor.mirrored, wanted.predictor.mirrored);
+    code_all(now.fan.of, wanted.fan.of);
+  }
+
+  // As a change: bit length in unary, sign and the bits below the leading one raw.
+  void code_weight(std::int64_t& current, std::int64_t target) {
+    const std::int64_t change = target - current;
+    std::size_t length = 0;
+    const auto wanted = static_cast<std::size_t>(bit_length(change));
+    while (length < 8 && coder_.bit(model_.weight_length[length], wanted > length)) ++length;
+    current = clamp_to(current + code_tail(static_cast<int>(length), change), kMostWeight);
+  }
+
+  // Sign and low bits of a number of the given bit length.
+  std::int64_t code_tail(int length, std::int64_t value) {
+    if (length == 0) return 0;
+    const std::int64_t size = value < 0 ? -value : value;
+    const auto top = std::uint32_t{1} << (length - 1);
+    const std::uint32_t tail = coder_.raw(length, (static_cast<std::uint32_t>(size) - top) << 1 |
+                                                      static_cast<std::uint32_t>(value < 0));
+    const std::int64_t decoded = std::int64_t{top} + (tail >> 1);
+    return (tail & 1) != 0 ? -decoded : decoded;
+  }
+
+  // A mark at every vertex that may be split, until the last split.
+  Status code_dense(std::uint32_t count) {
+    const std::uint32_t vertices = mesh_.vertex_count();
+    std::size_t next = 0;
+    for (VertexId v(0); v.value < vertices; ++v.value) {
+      const std::uint32_t free = state_.free_faces(v);
+      if (free == 0) continue;
+      AdaptiveBit& model = model_.mark[is_border(v)][std::min(
+          state_.valence(v), SplitModel::kValences - 1)][std::min(free, SplitModel::kFree - 1)];
+      coder_.enter(SplitSection::marks);
+      if (!coder_.bit(model, is_wanted(next, v))) continue;
+      if (Status coded = code_split(v, next++); !coded) return coded;
+      if (next == count) return {};
+    }
+    return bad_input("a batch has more splits than the mesh has vertices to split");
+  }
+
+  bool is_wanted(std::size_t next, VertexId v) const {
+    if constexpr (Coder::kDecodes) return false;
+    return kept_vertex(mesh_.connectivity(), (*batch_)[next].split.site) == v;
+  }
+
+  // The distance from one vertex to the next.
+  Status code_sparse(std::uint32_t count) {
+    std::uint64_t vertex = 0;
+    for (std::size_t next = 0; next < count; ++next) {
+      std::uint32_t gap = 0;
+      if constexpr (!Coder::kDecodes) {
+        gap = static_cast<std::uint32_t>(
+            kept_vertex(mesh_.connectivity(), (*batch_)[next].split.site).value - vertex);
+      }
+      coder_.enter(SplitSection::marks);
+      vertex += code_gap(gap);
+      if (vertex >= mesh_.vertex_count()) return bad_input("a split's vertex does not exist");
+      const VertexId v(static_cast<std::uint32_t>(vertex++));
+      if (state_.free_faces(v) == 0) return bad_input("a split's vertex has no free face");
+      if (Status coded = code_split(v, next); !coded) return coded;
+    }
+    return {};
+  }
+
+  std::uint32_t code_gap(std::uint32_t gap) {
+    std::size_t length = 0;
+    const auto wanted = static_cast<std::size_t>(bit_length(gap));
+    while (length < 32 && coder_.bit(model_.gap_length[length], wanted > length)) ++length;
+    if (length < 2) return static_cast<std::uint32_t>(length);
+    const std::uint32_t top = std::uint32_t{1} << (length - 1);
+    return top + coder_.raw(static_cast<int>(length) - 1, gap & (top - 1));
+  }
+
+  bool is_border(VertexId v) const {
+    return header_.has_borders && mesh_.connectivity().is_border(v);
+  }
+
+  // The next split, which keeps `v`.
+  Status code_split(VertexId v, std::size_t next) {
+    if constexpr (Coder::kDecodes) {
+      if (coder_.failed()) return bad_input("the chunk ends inside a batch");
+      batch_->emplace_back();
+    }
+    BatchSplit& entry = (*batch_)[next];
+    SplitSite& site = entry.split.site;
+    coder_.enter(SplitSection::cuts);
+    code_kind(v, site);
+    Status cut = site.kind == SplitKind::interior ? code_interior(v, site) : code_border(v, site);
+    if (!cut) return cut;
+    state_.cover(mesh_, site);
+    patch_.gather(mesh_, site);
+    coder_.enter(SplitSection::positions);
+    return code_positions(entry);
+  }
+
+  void code_kind(VertexId v, SplitSite& site) {
+    SplitKind kind = SplitKind::interior;
+    if (is_border(v)) {
+      AdaptiveBit& model = model_.interior[valence_class(v)];
+      if (!coder_.bit(model, site.kind == SplitKind::interior)) {
+        kind = coder_.bit(model_.last, site.kind == SplitKind::border_last)
+                   ? SplitKind::border_last
+                   : SplitKind::border_first;
+      }
+    }
+    site.kind = kind;
+  }
+
+  std::size_t valence_class(VertexId v) const {
+    return std::min(state_.valence(v), SplitModel::kValences - 1);
+  }
+
+  // How many faces, from `least` to `most`.
+  std::uint32_t code_size(VertexId v, std::uint32_t least, std::uint32_t most, std::uint32_t size) {
+    auto& models = model_.larger[least];
+    std::uint32_t coded = least;
+    while (coded < most) {
+      AdaptiveBit& model = models[std::min(coded, SplitModel::kFanSizes - 1)][valence_class(v)]
+                                 [std::min(most, SplitModel::kFanSizes - 1)];
+      if (!coder_.bit(model, size > coded)) break;
+      ++coded;
+    }
+    return coded;
+  }
+
+  Status code_interior(VertexId v, SplitSite& site) {
+    if (!ring_.gather(mesh_, v)) return code_at_hub(v, site);
+    const std::uint32_t most = ring_.find_runs(state_.covered());
+    if (most == 0) return bad_input("a split's vertex has no fan to split");
+    const std::uint32_t size = code_size(v, 1, most, site.moved_faces);
+    const auto candidates = ring_.rank(mesh_, size, model_.parameters.fan);
+    std::size_t chosen = 0;
+    for (; chosen + 1 < candidates.size(); ++chosen) {
+      const bool wanted = ring_.half_edge(candidates[chosen].first) == site.half_edge;
+      if (coder_.bit(candidate_model(candidates, chosen), wanted)) break;
+    }
+    site.half_edge = ring_.half_edge(candidates[chosen].first);
+    site.moved_faces = static_cast<std::uint16_t>(size);
+    return {};
+  }
+
+  AdaptiveBit& candidate_model(std::span<const VertexRing::Candidate> candidates, std::size_t at) {
+    const auto next =
+        std::min<std::int64_t>(7, ring_.lead(candidates[at], candidates[at + 1], 3) >> 4);
+    const auto after =
+        at + 2 < candidates.size()
+            ? std::min<std::int64_t>(3, ring_.lead(candidates[at], candidates[at + 2], 1) >> 4)
+            : 3;
+    return model_.candidate[std::min<std::size_t>(at, 3)][static_cast<std::size_t>(next)]
+                           [static_cast<std::size_t>(after)];
+  }
+
+  // Around a vertex of high valence, where walking its ring for every split could take for ever,
+  // the first face is named.
+  Status code_at_hub(VertexId v, SplitSite& site) {
+    const std::uint32_t size = code_size(v, 1, kMaxMovedFaces, site.moved_faces);
+    Status named = name_half_edge(v, site, false);
+    if (!named) return named;
+    site.moved_faces = static_cast<std::uint16_t>(size);
+    return check_fan(site);
+  }
+
+  // By its face: the half-edge that leaves `v`, or if `incoming` the one that ends there.
+  Status name_half_edge(VertexId v, SplitSite& site, bool incoming) {
+    const std::uint32_t faces = mesh_.face_count();
+    const std::uint32_t face = coder_.raw(bit_length(faces - 1), site.half_edge.value / 3);
+    if (face >= faces) return bad_input("a split's face does not exist");
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      const HalfEdgeId h(3 * face + corner);
+      if (mesh_.connectivity().origin(h) != v) continue;
+      site.half_edge = incoming ? HalfEdgeMesh::prev(h) : h;
+      return {};
+    }
+    return bad_input("a split's face is not its vertex's");
+  }
+
+  // Whether a split at `site`, whose half-edge is at its kept vertex, is possible and its faces
+  // are free.
+  Status check_fan(const SplitSite& site) const {
+    const HalfEdgeMesh& connectivity = mesh_.connectivity();
+    if (Status possible = connectivity.check(site); !possible) return possible;
+    const bool clockwise = site.kind == SplitKind::border_last;
+    HalfEdgeId h = clockwise ? connectivity.next(site.half_edge) : site.half_edge;
+    for (std::uint32_t face = 0;;) {
+      if (!state_.is_free(HalfEdgeMesh::face(h))) return bad_input("two splits cover a face");
+      if (++face >= site.moved_faces) return {};
+      h = clockwise ? connectivity.rotate_cw(h) : connectivity.rotate_ccw(h);
+    }
+  }
+
+  Status code_border(VertexId v, SplitSite& site) {
+    const bool last = site.kind == SplitKind::border_last;
+    std::uint32_t most = kMaxMovedFaces;
+    if (ring_.gather(mesh_, v)) {
+      most = free_border_faces(last);
+      const HalfEdgeId end = ring_.half_edge(last ? ring_.faces() - 1 : 0);
+      const HalfEdgeId half_edge = last ? HalfEdgeMesh::prev(end) : end;
+      site.half_edge = half_edge;
+    } else if (Status named = name_half_edge(v, site, last); !named) {
+      return named;
+    }
+    site.moved_faces = static_cast<std::uint16_t>(code_size(v, 0, most, site.moved_faces));
+    return check_fan(site);
+  }
+
+  // At that end of the ring.
+  std::uint32_t free_border_faces(bool last) const {
+    std::uint32_t count = 0;
+    while (count < ring_.faces() &&
+           state_.is_free(ring_.face(last ? ring_.faces() - 1 - count : count))) {
+      ++count;
+    }
+    return count;
+  }
+
+  Status code_positions(BatchSplit& entry) {
+    const Predictor& predictor = model_.parameters.predictor;
+    VertexSplit& split = entry.split;
+    if (Status coded = code_point(predict(patch_, predictor), model_.added, split.position);
+        !coded) {
+      return prefixed("added vertex", coded.error());
+    }
+    entry.cost = split_cost(patch_, split.position);
+    if (!header_.has_relocations) return {};
+    coder_.enter(SplitSection::relocations);
+    Vec3i kept = patch_.kept + split.relocation;
+    if (Status coded =
+            code_point(predict_kept(patch_, predictor, split.position), model_.kept, kept);
+        !coded) {
+      return prefixed("kept vertex", coded.error());
+    }
+    split.relocation = kept - patch_.kept;
+    return {};
+  }
+
+  // Two coordinates, then the one along which the normal is longest: what is known of the first
+  // ones shifts the next one along the tangential plane, so that the last residual is the normal
+  // part alone.
+  Status code_point(const Prediction& prediction, SplitModel::Residuals& models, Vec3i& point) {
+    const std::array<std::int64_t, 3> normal = {patch_.normal.x, patch_.normal.y, patch_.normal.z};
+    const std::size_t c = longest(normal), a = (c + 1) % 3, b = (c + 2) % 3;
+    const std::array<std::int64_t, 3> at = {prediction.at.x, prediction.at.y, prediction.at.z};
+    const std::array<std::int32_t*, 3> axes = {&point.x, &point.y, &point.z};
+    const std::array<std::int32_t, 3> kept = {patch_.kept.x, patch_.kept.y, patch_.kept.z};
+
+    const auto code = [&](std::size_t axis, std::int64_t expected, std::size_t part, int likely) {
+      return code_coordinate(kept[axis] + ((expected * (std::int64_t{1} << patch_.shift) + 4) >> 3),
+                             models, part, likely, *axes[axis]);
+    };
+    const auto off = [&](std::size_t axis, std::int64_t expected) {
+      const std::int64_t local = (8 * (std::int64_t{*axes[axis]} - kept[axis])) >> patch_.shift;
+      return clamp_to(local - expected, std::int64_t{1} << 20);
+    };
+    bool on = code(a, at[a], 0, prediction.tangential_class);
+    const std::int64_t off_a = off(a, at[a]);
+    const std::int64_t across = patch_.normal_squared - normal[a] * normal[a];
+    const std::int64_t expected_b = at[b] + divide(-normal[a] * normal[b] * off_a, across);
+    on = on && code(b, expected_b, 0, prediction.tangential_class);
+    const std::int64_t slope = -(normal[a] * off_a + normal[b] * off(b, at[b]));
+    const std::int64_t expected_c =
+        at[c] + (normal[c] > 0 ? divide(slope, normal[c]) : divide(-slope, -normal[c]));
+    on = on && code(c, expected_c, 1, prediction.normal_class);
+    return on ? Status() : bad_input("off the lattice");
+  }
+
+  static std::size_t longest(const std::array<std::int64_t, 3>& v) {
+    std::size_t axis = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (std::abs(v[i]) > std::abs(v[axis])) axis = i;
+    }
+    return axis;
+  }
+
+  // False if the coordinate is off the lattice.
+  bool code_coordinate(std::int64_t expected, SplitModel::Residuals& models, std::size_t part,
+                       int likely, std::int32_t& coordinate) {
+    const std::int64_t most = (std::int64_t{1} << header_.lattice.bits) - 1;
+    expected = expected < 0 ? 0 : expected > most ? most : expected;
+    const std::int64_t wanted = std::int64_t{coordinate} - expected;
+    const int centre = std::max(0, likely / 2 - (part == 0 ? 5 : 4));
+    const int length = code_length(models.length[part][static_cast<std::size_t>(likely)], centre,
+                                   bit_length(wanted));
+    const std::int64_t coded = expected + code_residual(length, models.second[part], wanted);
+    if (coded < 0 || coded > most) return false;
+    coordinate = static_cast<std::int32_t>(coded);
+    return true;
+  }
+
+  int code_length(LengthModel& model, int centre, int wanted) {
+    const auto step = [](int distance) { return static_cast<std::size_t>(std::min(distance, 7)); };
+    int length = centre;
+    if (coder_.bit(model.above, wanted > centre)) {
+      ++length;
+      while (length < 31 && coder_.bit(model.up[step(length - centre - 1)], wanted > length)) {
+        ++length;
+      }
+    } else {
+      while (length > 0 && coder_.bit(model.down[step(centre - length)], wanted < length)) {
+        --length;
+      }
+    }
+    return length;
+  }
+
+  std::int64_t code_residual(int length, std::array<AdaptiveBit, 32>& second, std::int64_t wanted) {
+    if (length < 2) return code_tail(length, wanted);
+    const std::int64_t size = wanted < 0 ? -wanted : wanted;
+    const bool high =
+        coder_.bit(second[static_cast<std::size_t>(length)], (size >> (length - 2) & 1) != 0);
+    const std::uint32_t below = std::uint32_t{1} << (length - 2);
+    const std::uint32_t tail =
+        coder_.raw(length - 1, (static_cast<std::uint32_t>(size) & (below - 1)) << 1 |
+                                   static_cast<std::uint32_t>(wanted < 0));
+    const std::int64_t coded = std::int64_t{high ? 3 : 2} * below + (tail >> 1);
+    return (tail & 1) != 0 ? -coded : coded;
+  }
+
+  Coder& coder_;
+  const FileHeader& header_;
+  SplitModel& model_;
+  const RefinableMesh& mesh_;
+  BatchMesh& state_;
+  std::vector<BatchSplit>* batch_ = nullptr;
+  VertexRing ring_;
+  Patch patch_;
+};
+
+}  // namespace pmesh
