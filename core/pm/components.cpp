@@ -83,6 +83,7 @@ std::vector<std::uint32_t> sorted_by_size(const Roots& roots, std::span<const Ve
     return size_a != size_b ? size_a > size_b : a.spread < b.spread;
   });
   std::vector<std::uint32_t> sorted;
+  sorted.reserve(entries.size());
   for (const Entry& entry : entries) sorted.push_back(entry.root);
   return sorted;
 }

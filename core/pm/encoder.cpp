@@ -19,7 +19,7 @@
 namespace pmesh {
 namespace {
 
-constexpr std::size_t kFirstChunkBytes = 4 * 1024;
+constexpr std::size_t kFirstChunkBytes = 1024;
 constexpr std::size_t kLargestChunkBytes = 256 * 1024;
 constexpr std::size_t kBitsOfSplit = 17;  // what a split takes, about
 

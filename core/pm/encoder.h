@@ -26,7 +26,7 @@ struct EncodeInput {
 };
 
 /// The whole file. Renames vertices: the base's come first, in the order Draco gives them, then
-/// the others in the order in which they arrive or are split off. Chunks grow from 4 KiB by half to
+/// the others in the order in which they arrive or are split off. Chunks grow from 1 KiB by half to
 /// 256 KiB; that bound doubles until the index fits the prologue, and, beside it, a base of up to 8
 /// KiB the first 16 KiB. The header's box is that of the full mesh; coarser ones may exceed it
 /// where the log relocates.

@@ -1,6 +1,7 @@
 #include "core/pm/format.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -11,7 +12,7 @@ namespace pmesh {
 namespace {
 
 constexpr std::size_t kFixedHeaderBytes = 168;  // up to the strings
-constexpr std::size_t kRowBytes = 56;
+constexpr std::size_t kRowBytes = 36;
 constexpr std::size_t kArrivalBytes = 8;  // of a row of a file with arrivals, besides
 constexpr std::size_t kCrcOffset = 20;
 constexpr std::uint8_t kBaseCodecDraco = 1;
@@ -110,32 +111,40 @@ void put_header(ByteWriter& writer, const FileIndex& index) {
   put_string(writer, h.unit);
 }
 
-void put_row(ByteWriter& writer, const ChunkRow& row, bool has_arrivals) {
-  writer.put(row.offset);
+// The rms error is written as a float, a share of the largest.
+float rms_share(const ChunkRow& row) {
+  return static_cast<float>(row.max_error == 0 ? 0 : row.rms_error / row.max_error);
+}
+
+// Counts as their growth, which 32 bits hold: so do the file's bounds on what a chunk may add.
+void put_row(ByteWriter& writer, const FileIndex& index, std::size_t chunk) {
+  const ChunkRow& row = index.chunks[chunk];
   writer.put(row.bytes);
   writer.put(row.crc);
   writer.put(ByteView(row.digest));
-  writer.put(row.vertices);
-  writer.put(row.faces);
+  writer.put(static_cast<std::uint32_t>(row.vertices - index.vertices_after(chunk)));
+  writer.put(static_cast<std::uint32_t>(row.faces - index.faces_after(chunk)));
   writer.put(row.max_error);
-  writer.put(row.rms_error);
-  if (!has_arrivals) return;
+  writer.put(std::bit_cast<std::uint32_t>(rms_share(row)));
+  if (!index.header.has_arrivals) return;
   writer.put(static_cast<std::uint32_t>(row.arrivals.vertices));
   writer.put(static_cast<std::uint32_t>(row.arrivals.faces));
 }
 
-ChunkRow get_row(ByteReader& reader, bool has_arrivals) {
+// The row that follows those already in `index`.
+ChunkRow get_row(ByteReader& reader, const FileIndex& index) {
+  const std::size_t before = index.chunks.size();
   ChunkRow row;
-  row.offset = reader.get<std::uint64_t>();
+  row.offset = index.prefix_bytes(before);
   row.bytes = reader.get<std::uint32_t>();
   row.crc = reader.get<std::uint32_t>();
   const ByteView digest = reader.take(row.digest.size());
   std::copy(digest.begin(), digest.end(), row.digest.begin());
-  row.vertices = reader.get<std::uint64_t>();
-  row.faces = reader.get<std::uint64_t>();
+  row.vertices = index.vertices_after(before) + reader.get<std::uint32_t>();
+  row.faces = index.faces_after(before) + reader.get<std::uint32_t>();
   row.max_error = reader.get_double();
-  row.rms_error = reader.get_double();
-  if (has_arrivals) {
+  row.rms_error = std::bit_cast<float>(reader.get<std::uint32_t>()) * row.max_error;
+  if (index.header.has_arrivals) {
     row.arrivals.vertices = reader.get<std::uint32_t>();
     row.arrivals.faces = reader.get<std::uint32_t>();
   }
@@ -293,7 +302,7 @@ Status check_rows(const FileIndex& index, const DecodeLimits& limits) {
   for (std::size_t c = 0; c < index.chunks.size(); ++c) {
     const ChunkRow& row = index.chunks[c];
     const std::string where = "index row " + std::to_string(c);
-    if (row.offset != end || row.bytes == 0) return damaged(where + ": wrong offset or length");
+    if (row.bytes == 0) return damaged(where + ": no bytes");
     if (row.vertices <= vertices || row.faces <= faces) {
       return damaged(where + ": counts do not grow");
     }
@@ -334,6 +343,8 @@ Bytes write_prologue(FileIndex& index) {
   std::uint64_t end = index.base_end();
   for (ChunkRow& row : index.chunks) {
     row.offset = end;
+    if (!index.header.errors_measured) row.max_error = row.rms_error = -1;
+    row.rms_error = rms_share(row) * row.max_error;
     end = row.end();
   }
   index.header.file_bytes = end;
@@ -341,7 +352,7 @@ Bytes write_prologue(FileIndex& index) {
   Bytes bytes;
   ByteWriter writer(bytes);
   put_header(writer, index);
-  for (const ChunkRow& row : index.chunks) put_row(writer, row, index.header.has_arrivals);
+  for (std::size_t c = 0; c < index.chunks.size(); ++c) put_row(writer, index, c);
   const std::uint32_t crc = prologue_crc(bytes);
   for (std::size_t i = 0; i < 4; ++i)
     bytes[kCrcOffset + i] = static_cast<std::uint8_t>(crc >> 8 * i);
@@ -370,7 +381,7 @@ Result<std::optional<FileIndex>> parse_prologue(ByteView prefix, const DecodeLim
   if (Status s = parse_header(reader, *layout, index.header); !s) return s.error();
   for (std::uint32_t c = 0; c < layout->chunk_count; ++c) {
     ByteReader row(prologue.subspan(layout->header_bytes + std::size_t{layout->row_bytes} * c));
-    index.chunks.push_back(get_row(row, layout->has_arrivals()));
+    index.chunks.push_back(get_row(row, index));
   }
   if (Status s = check_lattice(index.header); !s) return s.error();
   if (Status s = check_counts(index.header, limits); !s) return s.error();

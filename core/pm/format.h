@@ -137,7 +137,8 @@ struct DecodeLimits {
 };
 
 /// Header and index as bytes: fills in prologue_bytes, the rows' offsets, file_bytes and the
-/// prologue's CRC, but takes content_hash as it is. Precondition: the result fits
+/// prologue's CRC, and rounds rms errors to what a row can hold (24 bits of precision), but takes
+/// content_hash as it is. Precondition: the result fits
 /// kMaxPrologueBytes, and the three strings fit kMaxHeaderBytes.
 Bytes write_prologue(FileIndex& index);
 

@@ -18,7 +18,7 @@ export function readPrologue(file) {
   const headerBytes = u16(10), rowBytes = u16(12), flags = u16(14), chunkCount = u32(16);
   const hasNewComponents = (flags & FLAG.newComponents) !== 0;
   const end = headerBytes + rowBytes * chunkCount;
-  require(headerBytes >= 171 && headerBytes <= 256 && rowBytes >= (hasNewComponents ? 64 : 56) &&
+  require(headerBytes >= 171 && headerBytes <= 256 && rowBytes >= (hasNewComponents ? 44 : 36) &&
     rowBytes <= 64 && end <= 16384 && file.length >= end, 'header: sizes');
   require((flags & ~15) === 0, 'header: flags');
   checkPrologue(file.slice(0, end), u32(20));
@@ -39,14 +39,17 @@ export function readPrologue(file) {
   require(header.fileBytes === file.length, 'this decoder takes whole files only');
 
   const rows = [];
+  let { vertices, faces } = header.base, offset = header.end + header.base.bytes;
   for (let at = headerBytes; at < end; at += rowBytes) {
+    const bytes = u32(at);
+    vertices += u32(at + 16);
+    faces += u32(at + 20);
     rows.push({
-      offset: u64(at), bytes: u32(at + 8), crc: u32(at + 12),
-      digest: file.subarray(at + 16, at + 24),
-      vertices: u64(at + 24), faces: u64(at + 32),
-      newVertices: hasNewComponents ? u32(at + 56) : 0,
-      newFaces: hasNewComponents ? u32(at + 60) : 0,
+      offset, bytes, crc: u32(at + 4), digest: file.subarray(at + 8, at + 16), vertices, faces,
+      newVertices: hasNewComponents ? u32(at + 36) : 0,
+      newFaces: hasNewComponents ? u32(at + 40) : 0,
     });
+    offset += bytes;
   }
   checkRows(header, rows);
   return { header, rows };
@@ -66,7 +69,7 @@ function checkRows(header, rows) {
   for (const row of rows) {
     row.splits = row.vertices - vertices - row.newVertices;
     row.splitFaces = row.faces - faces - row.newFaces;
-    require(row.offset === end && row.bytes > 0, 'index: offsets');
+    require(row.bytes > 0, 'index: an empty chunk');
     require(row.vertices > vertices && row.faces > faces, 'index: counts do not grow');
     require(row.splits >= 0 && row.splitFaces <= 2 * row.splits &&
       row.splitFaces >= (header.hasBorders ? 1 : 2) * row.splits, 'index: impossible counts');

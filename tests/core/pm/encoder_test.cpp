@@ -94,11 +94,11 @@ TEST(Encoder, GivesTheSameBytesEveryTime) {
   EXPECT_EQ(encode_shape("a", mesh).file, encode_shape("b", mesh).file);
 }
 
-TEST(Encoder, ChunksGrowFromFourKibibytesByHalfAsFarAsBatchesAllow) {
+TEST(Encoder, ChunksGrowFromOneKibibyteByHalfAsFarAsBatchesAllow) {
   const EncodedShape shape = encode_shape("ball", shapes::icosphere(6));
   const FileIndex index = **parse_prologue(shape.file);
   ASSERT_GE(index.chunks.size(), 4u);
-  double target = 4096;
+  double target = 1024;
   for (std::size_t c = 0; c + 1 < index.chunks.size(); ++c, target *= 1.5) {
     EXPECT_LE(index.chunks[c].bytes, 1.5 * target);
     EXPECT_GE(index.chunks[c].bytes, target / 1.5);
