@@ -112,12 +112,7 @@ class EdgeCandidates {
     return {work_.mesh().origin(edge), work_.mesh().target(edge)};
   }
   std::span<const VertexId> ring() {
-    const VertexId merged = work_.log().collapses.back().kept;
-    ring_.assign({merged});
-    all_neighbours(work_.mesh(), merged, [&](VertexId v) {
-      ring_.push_back(v);
-      return true;
-    });
+    gather_merged(work_, ring_);
     return ring_;
   }
 

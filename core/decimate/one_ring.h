@@ -1,6 +1,8 @@
 // Gathers the geometry that metrics and the fold-over check read (see metric.h).
 #pragma once
 
+#include <vector>
+
 #include "core/decimate/metric.h"
 #include "core/decimate/working_mesh.h"
 #include "core/mesh/half_edge_mesh.h"
@@ -37,5 +39,15 @@ void gather_faces(OneRing& ring);
 /// The faces that move if the centre is collapsed into neighbour `head`, on a border along a
 /// border edge. Precondition: head is the first or last neighbour if ring.border.
 void move_faces(const OneRing& ring, std::uint32_t head, MovedFaces& moved);
+
+/// The vertex that the last collapse kept, and all its neighbours.
+inline void gather_merged(const WorkingMesh& work, std::vector<VertexId>& ring) {
+  const VertexId merged = work.log().collapses.back().kept;
+  ring.assign({merged});
+  all_neighbours(work.mesh(), merged, [&](VertexId v) {
+    ring.push_back(v);
+    return true;
+  });
+}
 
 }  // namespace pmesh

@@ -85,12 +85,7 @@ class TriangleCandidates {
     return {corners[0], corners[1], corners[2]};
   }
   std::span<const VertexId> ring() {
-    const VertexId merged = work_.log().collapses.back().kept;
-    ring_.assign({merged});
-    all_neighbours(work_.mesh(), merged, [&](VertexId v) {
-      ring_.push_back(v);
-      return true;
-    });
+    gather_merged(work_, ring_);
     return ring_;
   }
 
