@@ -44,10 +44,10 @@ inline constexpr std::uint32_t kCoarse = 5;
 template <class ElementId, class KeyOf>
 float batch_threshold(KeyOf key_of, std::span<const ElementId> live, bool is_coarse,
                       std::uint64_t to_go) {
-  constexpr std::size_t kSample = 1 << 14;  // elements whose quantiles stand for those of all
-  constexpr double kFineShare = 0.75, kCoarseShare = 0.45;  // of the candidates
+  constexpr std::size_t kSample = 1 << 13;  // elements whose quantiles stand for those of all
+  constexpr double kFineShare = 0.72, kCoarseShare = 0.5;  // of the candidates
   constexpr double kLowShare = 0.2;  // no key above so many times the one of this quantile:
-  constexpr float kFineSpread = 100, kCoarseSpread = 7;  // costs of CAD models range widely
+  constexpr float kFineSpread = 100, kCoarseSpread = 6;  // costs of CAD models range widely
   constexpr double kOpenPerCollapse = 4;  // near the target, so that the last batch stays cheap
 
   std::vector<float> sample;
@@ -60,17 +60,21 @@ float batch_threshold(KeyOf key_of, std::span<const ElementId> live, bool is_coa
   take(1 + live.size() / kSample);
   if (sample.empty()) take(1);
   if (sample.empty()) return -1;
+  auto end = sample.end();  // keys from here on are none of those still asked for
   const auto quantile = [&](double share) {
     const double place = std::min(share, 1.0) * static_cast<double>(sample.size() - 1);
     const auto at = sample.begin() + static_cast<std::ptrdiff_t>(place);
-    std::nth_element(sample.begin(), at, sample.end());
+    if (at >= end) return *at;
+    std::nth_element(sample.begin(), at, end);
+    end = at + 1;
     return *at;
   };
   const double needed =
       kOpenPerCollapse * static_cast<double>(to_go) / static_cast<double>(live.size());
   const double share = is_coarse ? kCoarseShare : kFineShare;
   const float spread = is_coarse ? kCoarseSpread : kFineSpread;
-  return std::min(quantile(std::min(share, needed)), spread * quantile(kLowShare));
+  const float most = quantile(std::min(share, needed));  // before the lower one
+  return std::min(most, spread * quantile(kLowShare));
 }
 
 }  // namespace pmesh

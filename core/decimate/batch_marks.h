@@ -14,23 +14,17 @@ class BatchMarks {
   explicit BatchMarks(std::uint32_t vertex_slots) : marks_(vertex_slots, 0) {}
 
   /// Forgets everything.
-  void start_batch() { batch_ += 2; }
+  void start_batch() { ++batch_; }
 
   /// Vertices around those that a step has removed or moved: no other step may move them.
   void block(std::span<const VertexId> ring) {
-    for (const VertexId v : ring) {
-      if (!is_blocked(v)) marks_[v.value] = batch_;
-    }
+    for (const VertexId v : ring) marks_[v.value] = batch_;
   }
-  /// The vertex that a step has kept, one of the blocked: no other step may keep it.
-  void keep(VertexId v) { marks_[v.value] = batch_ + 1; }
-
-  bool is_blocked(VertexId v) const { return marks_[v.value] >= batch_; }
-  bool is_kept(VertexId v) const { return marks_[v.value] > batch_; }
+  bool is_blocked(VertexId v) const { return marks_[v.value] == batch_; }
 
  private:
   std::uint32_t batch_ = 0;
-  std::vector<std::uint32_t> marks_;  // batch_: blocked; batch_ + 1: kept, too
+  std::vector<std::uint32_t> marks_;  // the last batch that has blocked the vertex
 };
 
 }  // namespace pmesh

@@ -27,6 +27,15 @@ class BorderLoops {
   /// Takes `v` out of its loop. To be called just before the collapse that removes it.
   void remove(VertexId v) { previous_[next(v).value] = previous(v); }
 
+  /// Follows the mesh to compact ids.
+  void renumber(const CompactIds& ids) {
+    if (previous_.empty()) return;
+    close_up(previous_, ids.vertices);
+    for (VertexId& v : previous_) {
+      if (v.valid()) v = ids.new_vertices[v.value];
+    }
+  }
+
  private:
   const HalfEdgeMesh& mesh_;
   std::vector<VertexId> previous_;  // by vertex; empty if the mesh has no border

@@ -29,6 +29,11 @@ class Course {
     return 1 + vertices * (faces() - options_.base_faces) / faces();
   }
 
+  /// Whatever is collapsed, fewer do not reach the target.
+  std::uint64_t least_collapses_to_go() const {
+    return is_done() ? 0 : (1 + faces() - options_.base_faces) / 2;
+  }
+
   void show_progress() {
     guess_ = std::max(guess_, collapses());
     if (options_.progress) options_.progress(collapses(), guess_);

@@ -12,7 +12,7 @@ namespace {
 template <HalfEdgeMetric M>
 HalfEdgeCandidates<M> make_candidates(WorkingMesh& work, const M& metric,
                                       const DecimateOptions& options) {
-  return {work, metric, options.locked};
+  return {work, metric, options};
 }
 
 template <EdgeMetric M>
@@ -31,6 +31,7 @@ TriangleCandidates<M> make_candidates(WorkingMesh& work, const M& metric,
 
 Decimation decimate(HalfEdgeMesh mesh, std::vector<Vec3d> positions,
                     const DecimateOptions& options) {
+  assert(options.threads >= 1);
   assert(options.locked.empty() || options.locked.size() == positions.size());
   WorkingMesh work(std::move(mesh), std::move(positions));
   std::uint32_t collapses_per_step = 1;

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/decimate/batch_marks.h"
 #include "core/decimate/edge_patch.h"
 #include "core/decimate/edge_pricer.h"
 #include "core/decimate/edge_star.h"
@@ -32,6 +31,9 @@ class EdgeCandidates {
     Placement placement;
     OneRing ring;  // neighbours only
     EdgePricer<M> pricer;
+
+    // To be called when the mesh has changed.
+    void forget() { pricer.forget(); }
   };
 
   EdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
@@ -87,6 +89,12 @@ class EdgeCandidates {
     return true;
   }
 
+  template <class Popped, class Put>
+  void evaluate_each(std::span<const HalfEdgeId> elements, const Popped& popped, const Put& put,
+                     Scratch& scratch) const {
+    for (const HalfEdgeId e : elements) put(e, evaluate(e, popped(e), scratch), 1);
+  }
+
   std::span<const HalfEdgeId> gone() const { return gone_; }
   std::span<const HalfEdgeId> changed() const {
     return SummaryMetric<M> ? patch_.edges() : patch_.merged_edges();
@@ -116,14 +124,7 @@ class EdgeCandidates {
     return ring_;
   }
 
-  // Steps that do not meet leave each other's stars as they are: nothing can be taken.
-  bool collapse_unless_taken(HalfEdgeId edge, double popped, const BatchMarks& /*marks*/,
-                             Scratch& scratch) {
-    return collapse(edge, popped, scratch);
-  }
-
   void expect(HalfEdgeId /*next*/) {}
-  void look_ahead(HalfEdgeId /*next*/) const {}
 
   std::optional<Relaxation> relax() {
     if (std::exchange(may_fold_over_, true)) return std::nullopt;

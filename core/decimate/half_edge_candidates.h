@@ -10,8 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/decimate/batch_marks.h"
-#include "core/decimate/indexed_heap.h"
+#include "core/decimate/batch_claims.h"
+#include "core/decimate/decimate.h"
+#include "core/decimate/head_pricer.h"
 #include "core/decimate/legality.h"
 #include "core/decimate/metric.h"
 #include "core/decimate/one_ring.h"
@@ -19,12 +20,6 @@
 #include "core/decimate/working_mesh.h"
 
 namespace pmesh {
-
-// A metric that can say cheaply what a candidate costs at least.
-template <class M>
-concept HasFloor = requires(const M& metric, const OneRing& ring, std::uint32_t head) {
-  { metric.floor(ring, metric.prepare(ring), head) } -> std::same_as<double>;
-};
 
 template <HalfEdgeMetric M>
 class HalfEdgeCandidates {
@@ -35,19 +30,19 @@ class HalfEdgeCandidates {
   struct Scratch {
     PhaseMark mark;
     OneRing ring;
-    typename M::Prepared prepared;
     MovedFaces moved;
-    std::array<double, OneRing::kMaxFaces + 1> costs;
-    std::array<bool, OneRing::kMaxFaces + 1> is_floor;  // costs[i] is a lower bound as yet
+    HeadPricer<M> pricer;
   };
 
-  HalfEdgeCandidates(WorkingMesh& work, const M& metric, std::span<const std::uint8_t> locked)
+  HalfEdgeCandidates(WorkingMesh& work, const M& metric, const DecimateOptions& options)
       : work_(work),
         metric_(metric),
-        locked_(locked),
+        locked_(options.locked),
+        by_shape_(options.schedule == Schedule::batched),
         heads_(work.mesh().vertex_slots()),
+        claims_(work.mesh()),
         ahead_(work) {
-    metric_.start(work.mesh(), work.positions(), work.frame());
+    metric_.start(work.mesh(), work.positions(), work.frame(), options.threads);
   }
 
   std::uint32_t slots() const { return work_.mesh().vertex_slots(); }
@@ -60,30 +55,30 @@ class HalfEdgeCandidates {
     VertexId& head = heads_[v.value] = VertexId();
     if (!work_.mesh().is_live(v) || !gather(v, scratch)) return kRefused;
     scratch.mark.enter(DecimationPhase::cost);
-    price(scratch);
-    const std::uint32_t best = least(scratch);
-    return choose(scratch, by_shape_ && best != kNoIndex ? shapeliest(scratch, best) : best, popped,
-                  head);
+    HeadPricer<M>& pricer = scratch.pricer;
+    pricer.price(metric_, scratch.ring, may_fold_over_);
+    std::uint32_t best = pricer.cheapest(work_, metric_, scratch.ring);
+    if (by_shape_ && best != kNoIndex) best = pricer.shapeliest(metric_, scratch.ring, best);
+    return choose(scratch, best, popped, head);
   }
 
-  // From now on evaluate() takes, of the heads as cheap as the cheapest, the one that leaves the
-  // shortest edges: on flat ground, where all cost nothing, whim would leave fans that no codec
-  // can guess.
-  void choose_ties_by_shape() { by_shape_ = true; }
-
-  // After evaluate(): how much less than its key says the vertex should be removed, for the sake of
-  // the codec, which expects it in the middle of its ring. At least 1.
-  static double coding_factor(const Scratch& scratch) {
-    const OneRing& ring = scratch.ring;
-    Vec3d sum{};
-    double squares = 0;
-    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
-      const Vec3d p = ring.position(i);
-      sum += p;
-      squares += dot(p, p);
+  // Evaluates `vertices` and hands each to put(v, key, coding factor); popped(v) as above.
+  template <class Popped, class Put>
+  void evaluate_each(std::span<const VertexId> vertices, const Popped& popped, const Put& put,
+                     Scratch& scratch) {
+    RingLanes& lanes = scratch.pricer.lanes;
+    lanes.clear();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (i + kAhead < vertices.size()) metric_.prefetch(vertices[i + kAhead]);
+      const VertexId v = vertices[i];
+      if (!PricesLanes<M> || is_locked(v) || !lanes.add(work_, v)) {
+        const double key = evaluate(v, popped(v), scratch);
+        put(v, key, key < kRefused ? coding_factor(off_centre(scratch.ring)) : 1);
+      } else if (lanes.is_full()) {
+        evaluate_lanes(put, scratch.pricer);
+      }
     }
-    const double n = ring.neighbours, off = dot(sum, sum) / (n * n), spread = squares / n - off;
-    return spread > 0 ? 1 + kCostOfOffCentre * off / spread : 1;
+    evaluate_lanes(put, scratch.pricer);
   }
 
   // Evaluates the popped vertex `v`, whose best candidate proved illegal, among its legal ones. Its
@@ -91,11 +86,12 @@ class HalfEdgeCandidates {
   double evaluate_legal(VertexId v, double popped, Scratch& scratch) {
     VertexId& head = heads_[v.value] = VertexId();
     if (!gather(v, scratch)) return kRefused;
-    price(scratch);
-    std::uint32_t best = least(scratch);
+    HeadPricer<M>& pricer = scratch.pricer;
+    pricer.price(metric_, scratch.ring, may_fold_over_);
+    std::uint32_t best = pricer.cheapest(work_, metric_, scratch.ring);
     while (best != kNoIndex && !is_legal(scratch, best)) {
-      scratch.costs[best] = kRefused;
-      best = least(scratch);
+      pricer.refuse(best);
+      best = pricer.cheapest(work_, metric_, scratch.ring);
     }
     return std::max(popped, choose(scratch, best, 0, head));
   }
@@ -115,15 +111,31 @@ class HalfEdgeCandidates {
     return true;
   }
 
-  // The same for a vertex that was found legal, in a batch that has taken `marks` since.
-  bool collapse_unless_taken(VertexId removed, double /*popped*/, const BatchMarks& marks,
-                             Scratch& scratch) {
-    if (marks.is_kept(heads_[removed.value])) return false;
-    gather_candidate(removed, scratch.ring);
-    if (meets_kept(marks, scratch.ring, heads_[removed.value])) return false;
-    commit(removed, scratch);
-    return true;
+  // What a batch does instead, for vertices that do not meet and were found legal: one after the
+  // other they claim what they keep (see BatchClaims); those that stay legal, whose neighbours are
+  // gathered into `ring`, fold the metric's state, all at the same time; then they are collapsed.
+  void start_batch() { claims_.start_batch(); }
+  bool claim(VertexId removed) { return claims_.claim(removed, heads_[removed.value]); }
+  void release(VertexId removed) { claims_.release(heads_[removed.value]); }
+  bool stays_legal(VertexId removed, OneRing& ring) const {
+    gather_candidate(removed, ring);
+    return claims_.stays_legal(ring, heads_[removed.value]);
   }
+  void fold(VertexId removed) { metric_.fold(removed, heads_[removed.value]); }
+  HalfEdgeCollapse edit(VertexId removed) {
+    return work_.collapse_unlogged(removed,
+                                   find_spoke(work_.mesh(), removed, heads_[removed.value]));
+  }
+  // Follows the mesh to compact ids.
+  void renumber(const CompactIds& ids) {
+    metric_.renumber(ids);
+    close_up(heads_, ids.vertices);
+    for (VertexId& head : heads_) {
+      if (head.valid()) head = ids.new_vertices[head.value];
+    }
+  }
+  // Whether a key depends on that of the collapse that made its evaluation necessary.
+  static constexpr bool kInheritsKeys = M::kInheritsKeys;
 
   std::span<const VertexId> gone() const { return {}; }
   std::span<const VertexId> changed() const { return changed_; }
@@ -141,14 +153,17 @@ class HalfEdgeCandidates {
 
   bool is_live(VertexId v) const { return work_.mesh().is_live(v); }
   std::array<VertexId, 1> moved(VertexId v) const { return {v}; }
-  std::span<const VertexId> ring() const { return changed_; }
-
+  // Ask for what will soon be read of a vertex to be brought into the caches.
   void look_ahead(VertexId next) const {
     if (!is_live(next)) return;
-    metric_.prefetch(next);
     const HalfEdgeId first = work_.mesh().outgoing(next), before = work_.mesh().twin(first);
     work_.mesh().prefetch(first);
     if (before.valid()) work_.mesh().prefetch(before);
+  }
+  void look_ahead_to_fold(VertexId next) const {
+    look_ahead(next);
+    metric_.prefetch(next);
+    metric_.prefetch(heads_[next.value]);
   }
 
   void expect(VertexId next) {
@@ -163,14 +178,31 @@ class HalfEdgeCandidates {
   }
 
  private:
-  static constexpr double kNegligible = 1e-6;
-  static constexpr double kCostOfOffCentre = 4;  // docs/decisions/0012
-  static constexpr bool kMovesFaces = M::kGeometry == RingGeometry::moved_faces;
+  static constexpr std::uint32_t kAhead = 6;
+  static constexpr bool kMovesFaces = HeadPricer<M>::kMovesFaces;
+
+  bool is_locked(VertexId v) const { return !locked_.empty() && locked_[work_.name(v).value] != 0; }
+
+  // What evaluate() would say of the vertices in the lanes, which are cleared.
+  template <class Put>
+  void evaluate_lanes(const Put& put, HeadPricer<M>& pricer) {
+    if constexpr (PricesLanes<M>) {
+      assert(by_shape_);
+      const RingLanes& lanes = pricer.lanes;
+      pricer.price_lanes(
+          work_, metric_,
+          [&](std::uint32_t lane, std::uint32_t head, double cost, double off_centre) {
+            const VertexId v = lanes.centre[lane];
+            heads_[v.value] = lanes.ids[lane][head];
+            put(v, cost, coding_factor(off_centre));
+          });
+    }
+  }
 
   // False if `v` must not be removed.
   bool gather(VertexId v, Scratch& scratch) const {
     scratch.mark.enter(DecimationPhase::gather);
-    if (!locked_.empty() && locked_[v.value] != 0) return false;
+    if (is_locked(v)) return false;
     if (!gather_neighbours(work_.mesh(), v, scratch.ring)) return false;
     if constexpr (HasFloor<M>) prefetch_heads(scratch.ring);
     gather_positions(work_, scratch.ring);
@@ -193,16 +225,6 @@ class HalfEdgeCandidates {
     metric_.fold(removed, kept);
   }
 
-  // Whether a batch's collapses have broken the link condition of one that does not meet them: they
-  // only add edges between what they kept and what was around what they removed. So if `kept` now
-  // has an edge to a neighbour that another one has kept, it may be a second one.
-  bool meets_kept(const BatchMarks& marks, const OneRing& ring, VertexId kept) const {
-    const auto is_met = [&](VertexId v) { return v != kept && marks.is_kept(v); };
-    const std::span neighbours(ring.ids.data(), ring.neighbours);
-    return std::any_of(neighbours.begin(), neighbours.end(), is_met) &&
-           !link_condition_holds(work_.mesh(), ring, ring.index_of(kept));
-  }
-
   // The metric's state of a head is read if the floor of its cost does not rule it out.
   void prefetch_heads(const OneRing& ring) const {
     for (std::uint32_t i = 0; i < ring.neighbours; ++i) metric_.prefetch(ring.ids[i]);
@@ -218,99 +240,10 @@ class HalfEdgeCandidates {
     }
   }
 
-  // The costs of all candidates of the gathered vertex.
-  void price(Scratch& scratch) const {
-    auto& [mark, ring, prepared, moved, costs, is_floor] = scratch;
-    prepared = metric_.prepare(ring);
-    for (std::uint32_t head = 0; head < ring.neighbours; ++head) {
-      costs[head] = kRefused;
-      if (!may_move_to(ring, head)) continue;
-      if constexpr (kMovesFaces) {
-        move_faces(ring, head, moved);
-        if (!may_fold_over_ && folds_over(ring, moved)) continue;
-      }
-      if constexpr (HasFloor<M>) {
-        is_floor[head] = true;
-        costs[head] = metric_.floor(ring, prepared, head);
-      } else {
-        costs[head] = metric_.cost(ring, prepared, head, moved);
-      }
-    }
-  }
-
-  // The neighbour of the least finite cost, or kNoIndex.
-  std::uint32_t least(Scratch& scratch) const {
-    std::uint32_t best = least_known(scratch);
-    if constexpr (HasFloor<M>) {
-      while (best != kNoIndex && scratch.is_floor[best]) {
-        scratch.is_floor[best] = false;
-        scratch.costs[best] = metric_.cost(scratch.ring, scratch.prepared, best, scratch.moved);
-        best = least_known(scratch);
-      }
-    }
-    return best;
-  }
-
-  static std::uint32_t least_known(const Scratch& scratch) {
-    const auto& costs = scratch.costs;
-    const OneRing& ring = scratch.ring;
-    std::uint32_t best = kNoIndex;
-    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
-      if (!(costs[i] < kRefused)) continue;
-      if (best == kNoIndex || costs[i] < costs[best] ||
-          (costs[i] == costs[best] && tie_rank(ring.ids[i]) < tie_rank(ring.ids[best]))) {
-        best = i;
-      }
-    }
-    return best;
-  }
-
-  // Of the candidates that cost no more than `best` but for a thousandth of an edge's length off
-  // the faces around (in the metrics that weigh squared distances by areas; less in others).
-  std::uint32_t shapeliest(Scratch& scratch, std::uint32_t best) const {
-    auto& [mark, ring, prepared, moved, costs, is_floor] = scratch;
-    const double square = length_squared_of_edges(ring);
-    const double most = costs[best] + kNegligible * square * square;
-    std::uint32_t chosen = best;
-    double shortest = new_edges(ring, best);
-    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
-      if (i == best || !(costs[i] <= most)) continue;
-      if constexpr (HasFloor<M>) {
-        if (is_floor[i]) {
-          is_floor[i] = false;
-          costs[i] = metric_.cost(ring, prepared, i, moved);
-          if (!(costs[i] <= most)) continue;
-        }
-      }
-      const double length = new_edges(ring, i);
-      if (length >= shortest) continue;
-      shortest = length;
-      chosen = i;
-    }
-    return chosen;
-  }
-
-  static double length_squared_of_edges(const OneRing& ring) {
-    double sum = 0;
-    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
-      sum += dot(ring.position(i), ring.position(i));
-    }
-    return sum / ring.neighbours;
-  }
-
-  // The length of the edges from neighbour `head` to all others.
-  static double new_edges(const OneRing& ring, std::uint32_t head) {
-    double sum = 0;
-    for (std::uint32_t i = 0; i < ring.neighbours; ++i) {
-      sum += length(ring.position(i) - ring.position(head));
-    }
-    return sum;
-  }
-
   double choose(const Scratch& scratch, std::uint32_t best, double popped, VertexId& head) const {
     if (best == kNoIndex) return kRefused;
     head = scratch.ring.ids[best];
-    return metric_.priority(scratch.prepared, scratch.costs[best], popped);
+    return scratch.pricer.priority(metric_, best, popped);
   }
 
   // For a candidate of finite cost, whose neighbours were gathered.
@@ -326,12 +259,13 @@ class HalfEdgeCandidates {
   WorkingMesh& work_;
   M metric_;
   std::span<const std::uint8_t> locked_;
+  bool by_shape_;                // evaluate() chooses the shapeliest of the cheapest heads
   std::vector<VertexId> heads_;  // by vertex in the queue: the kept vertex of its best candidate
+  BatchClaims claims_;
   std::vector<VertexId> changed_;
   std::vector<double> keys_;  // of changed_
   RingAhead ahead_;
   bool may_fold_over_ = false;
-  bool by_shape_ = false;
 };
 
 }  // namespace pmesh

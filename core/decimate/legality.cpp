@@ -1,7 +1,5 @@
 #include "core/decimate/legality.h"
 
-#include <algorithm>
-
 namespace pmesh {
 namespace {
 
@@ -14,9 +12,16 @@ struct KeptRing {
   bool closed = false;
 };
 
+// Whole blocks are compared, without a branch in them.
 bool contains(const OneRing& ring, VertexId v) {
-  const VertexId* const end = ring.ids.data() + ring.neighbours;
-  return std::find(ring.ids.data(), end, v) != end;
+  constexpr std::uint32_t kBlock = OneRing::kIdBlock;
+  bool found = false;
+  for (std::uint32_t first = 0; first < ring.neighbours; first += kBlock) {
+    std::uint32_t equal = 0;
+    for (std::uint32_t i = first; i < first + kBlock; ++i) equal |= ring.ids[i] == v ? 1 : 0;
+    found |= equal != 0;
+  }
+  return found;
 }
 
 KeptRing look_up_neighbours(const HalfEdgeMesh& mesh, const OneRing& ring, VertexId kept) {

@@ -25,6 +25,10 @@
 
 namespace pmesh {
 
+/// A face whose doubled area is at most this times its squared longest edge (within a factor of
+/// four) has no usable normal: it counts as a face without area.
+inline constexpr double kZeroAreaRatio = 1e-10;
+
 /// A vertex, its neighbours and the faces between them, as a structure of arrays.
 ///
 /// Neighbours are in ccw order; face i is (centre, neighbour i, neighbour i+1). Around an interior
@@ -44,7 +48,9 @@ struct OneRing {
   std::uint32_t neighbours = 0;
   std::uint32_t faces = 0;
   bool border = false;  ///< The centre lies on a border.
-  std::array<VertexId, kMaxFaces + 1> ids{};
+  /// Invalid from `neighbours` to the end of a block of kIdBlock.
+  static constexpr std::uint32_t kIdBlock = 8;
+  std::array<VertexId, kMaxFaces + 1 + kIdBlock> ids{};
 
   Row x{}, y{}, z{};                ///< Neighbours' positions.
   Row nx{}, ny{}, nz{};             ///< Faces' unit normals; zero for a face without area.
@@ -102,10 +108,13 @@ template <class M>
 concept HalfEdgeMetric = requires(M metric, const M& const_metric, const HalfEdgeMesh& mesh,
                                   std::span<const Vec3d> positions, const MetricFrame& frame,
                                   const OneRing& ring, const MovedFaces& moved, std::uint32_t head,
-                                  double cost, double popped, VertexId v) {
+                                  double cost, double popped, VertexId v, unsigned threads,
+                                  const CompactIds& ids) {
   { M::kGeometry } -> std::convertible_to<RingGeometry>;
+  /// Whether priority() looks at `popped`.
+  { M::kInheritsKeys } -> std::convertible_to<bool>;
   /// Makes the per-vertex state of a mesh, before anything else is asked.
-  { metric.start(mesh, positions, frame) } -> std::same_as<void>;
+  { metric.start(mesh, positions, frame, threads) } -> std::same_as<void>;
   /// Asks for the state of a vertex to be brought into the processor's caches.
   { const_metric.prefetch(v) } -> std::same_as<void>;
   /// What all candidates of the ring's centre have in common.
@@ -120,6 +129,8 @@ concept HalfEdgeMetric = requires(M metric, const M& const_metric, const HalfEdg
   { const_metric.priority(const_metric.prepare(ring), cost, popped) } -> std::same_as<double>;
   /// Folds the per-vertex state of the removed into the kept vertex, once the mesh has changed.
   { metric.fold(v, v) } -> std::same_as<void>;
+  /// Follows the mesh to compact ids.
+  { metric.renumber(ids) } -> std::same_as<void>;
 };
 
 }  // namespace pmesh

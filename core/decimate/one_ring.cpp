@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/decimate/wide_vectors.h"
 
@@ -44,9 +45,13 @@ void dot_products(const double* __restrict nx, const double* __restrict ny,
   }
 }
 
-// Repeats the first `period` elements of a row once.
+// Repeats the first `period` elements of a row once, by whole blocks.
 void repeat(OneRing::Row& row, std::uint32_t period) {
-  std::copy_n(row.begin(), period, row.begin() + period);
+  for (std::size_t i = 0; i < period; i += 4) {
+    double block[4];
+    std::memcpy(block, row.data() + i, sizeof block);
+    std::memcpy(row.data() + period + i, block, sizeof block);
+  }
 }
 
 }  // namespace
@@ -66,6 +71,7 @@ bool gather_neighbours(const HalfEdgeMesh& mesh, VertexId v, OneRing& ring) {
   ring.border = !h.valid();
   ring.neighbours = faces;
   if (ring.border) ring.ids[ring.neighbours++] = mesh.apex(last);
+  std::fill_n(ring.ids.begin() + ring.neighbours, OneRing::kIdBlock, VertexId());
   return true;
 }
 

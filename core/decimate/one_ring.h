@@ -9,10 +9,6 @@
 
 namespace pmesh {
 
-/// A face whose doubled area is at most this times its squared longest edge (within a factor of
-/// four) has no usable normal: it counts as a face without area.
-inline constexpr double kZeroAreaRatio = 1e-10;
-
 /// Fills ring.centre, neighbours, faces, border and ids. False if `v` has more than
 /// OneRing::kMaxFaces faces; the walk stops there.
 bool gather_neighbours(const HalfEdgeMesh& mesh, VertexId v, OneRing& ring);
@@ -28,6 +24,17 @@ bool all_neighbours(const HalfEdgeMesh& mesh, VertexId v, const Holds& holds) {
     h = mesh.rotate_ccw(h);
   } while (h.valid() && h != first);
   return h.valid() || holds(mesh.apex(last));
+}
+
+/// The half-edge from `v` to its neighbour `to`, or, if there is only the other one, that.
+inline HalfEdgeId find_spoke(const HalfEdgeMesh& mesh, VertexId v, VertexId to) {
+  HalfEdgeId h = mesh.outgoing(v);
+  while (mesh.target(h) != to) {
+    const HalfEdgeId incoming = HalfEdgeMesh::prev(h);
+    h = mesh.twin(incoming);
+    if (!h.valid()) return incoming;
+  }
+  return h;
 }
 
 /// Fills in origin, positions and what lies beyond the border, after gather_neighbours.

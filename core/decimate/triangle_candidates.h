@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/decimate/batch_marks.h"
 #include "core/decimate/legality.h"
 #include "core/decimate/one_ring.h"
 #include "core/decimate/triangle_star.h"
@@ -69,6 +68,12 @@ class TriangleCandidates {
     return true;
   }
 
+  template <class Popped, class Put>
+  void evaluate_each(std::span<const FaceId> elements, const Popped& popped, const Put& put,
+                     Scratch& scratch) const {
+    for (const FaceId e : elements) put(e, evaluate(e, popped(e), scratch), 1);
+  }
+
   std::span<const FaceId> gone() const { return gone_; }
   std::span<const FaceId> changed() const { return changed_; }
   std::span<const FaceId> touched() const { return touched_; }
@@ -89,14 +94,7 @@ class TriangleCandidates {
     return ring_;
   }
 
-  // Steps that do not meet leave each other's stars as they are: nothing can be taken.
-  bool collapse_unless_taken(FaceId face, double popped, const BatchMarks& /*marks*/,
-                             Scratch& scratch) {
-    return collapse(face, popped, scratch);
-  }
-
   void expect(FaceId /*next*/) {}
-  void look_ahead(FaceId /*next*/) const {}
 
   std::optional<Relaxation> relax() {
     if (round_ + 1 < M::kRounds) {

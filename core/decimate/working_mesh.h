@@ -50,10 +50,48 @@ class WorkingMesh {
   const BorderLoops& borders() const { return borders_; }
   const CollapseLog& log() const { return log_; }
 
+  /// The id that `v` has in the input, in the log and in what is taken in the end.
+  VertexId name(VertexId v) const { return names_.empty() ? v : names_[v.value]; }
+
+  /// Gives what is live compact ids, so that it is not spread over more memory than it needs.
+  /// Precondition: no vertex has been placed anew.
+  CompactIds compact() {
+    assert(log_.kept_before.empty());
+    const std::uint32_t faces = mesh_.face_slots();
+    CompactIds ids = mesh_.compact();
+    borders_.renumber(ids);
+    if (names_.empty()) {
+      names_ = ids.vertices;
+      face_names_ = ids.faces;
+      input_faces_ = faces;
+      input_positions_ = std::move(positions_);
+      positions_.clear();
+      for (const VertexId v : names_) positions_.push_back(input_positions_[v.value]);
+    } else {
+      close_up(names_, ids.vertices);
+      close_up(face_names_, ids.faces);
+      close_up(positions_, ids.vertices);
+    }
+    return ids;
+  }
+
   /// Collapses `edge` as HalfEdgeMesh::collapse() does; the kept vertex stays where it is.
-  void collapse(VertexId removed, HalfEdgeId edge) {
+  void collapse(VertexId removed, HalfEdgeId edge) { log(collapse_unlogged(removed, edge)); }
+
+  /// Its two steps. Several threads may take the first at the same time, as they may
+  /// HalfEdgeMesh::collapse_uncounted().
+  HalfEdgeCollapse collapse_unlogged(VertexId removed, HalfEdgeId edge) {
     if (mesh_.is_border(removed)) borders_.remove(removed);
-    log_.collapses.push_back(mesh_.collapse(removed, edge));
+    HalfEdgeCollapse done = mesh_.collapse_uncounted(removed, edge);
+    if (names_.empty()) return done;
+    for (VertexId* v : {&done.removed, &done.kept, &done.left, &done.right}) {
+      if (v->valid()) *v = names_[v->value];
+    }
+    return done;
+  }
+  void log(const HalfEdgeCollapse& done) {
+    mesh_.count(done);
+    log_.collapses.push_back(done);
   }
 
   /// The same, and places the kept vertex at `position`.
@@ -65,12 +103,15 @@ class WorkingMesh {
     kept = position;
   }
 
-  /// Ends a batch of steps of `per_step` collapses, and puts what it has logged into another order:
-  /// by new place, the step's old place in the batch.
-  void end_batch(std::span<const std::uint32_t> order, std::uint32_t per_step) {
-    reorder(log_.collapses, order, per_step);
-    if (!log_.kept_before.empty()) reorder(log_.kept_before, order, per_step);
-    log_.batch_ends.push_back(static_cast<std::uint32_t>(log_.collapses.size()));
+  /// Ends a batch: all that has been collapsed since the last.
+  void end_batch() { log_.batch_ends.push_back(static_cast<std::uint32_t>(log_.collapses.size())); }
+
+  /// Puts a batch's steps of `per_step` collapses, of which the first is step `first`, into another
+  /// order: by new place, the step's old place. May be called for several batches at the same time.
+  void reorder_batch(std::uint32_t first, std::span<const std::uint32_t> order,
+                     std::uint32_t per_step) {
+    reorder(log_.collapses, first, order, per_step);
+    if (!log_.kept_before.empty()) reorder(log_.kept_before, first, order, per_step);
   }
 
   /// Asks for what there is of `v` to be brought into the caches.
@@ -79,19 +120,29 @@ class WorkingMesh {
     __builtin_prefetch(&positions_[v.value]);
   }
 
-  HalfEdgeMesh take_mesh() { return std::move(mesh_); }
-  std::vector<Vec3d> take_positions() { return std::move(positions_); }
+  HalfEdgeMesh take_mesh() {
+    if (!names_.empty()) {
+      compact();
+      mesh_.spread(names_, face_names_, static_cast<std::uint32_t>(input_positions_.size()),
+                   input_faces_);
+    }
+    return std::move(mesh_);
+  }
+  std::vector<Vec3d> take_positions() {
+    return std::move(names_.empty() ? positions_ : input_positions_);
+  }
   CollapseLog take_log() { return std::move(log_); }
 
  private:
   template <class T>
-  static void reorder(std::vector<T>& log, std::span<const std::uint32_t> order,
-                      std::uint32_t per_step) {
-    const auto batch = log.end() - static_cast<std::ptrdiff_t>(order.size() * per_step);
-    const std::vector<T> logged(batch, log.end());
+  static void reorder(std::vector<T>& log, std::uint32_t first,
+                      std::span<const std::uint32_t> order, std::uint32_t per_step) {
+    const auto batch = log.begin() + std::ptrdiff_t{first} * per_step;
+    const auto count = static_cast<std::ptrdiff_t>(order.size()) * per_step;
+    const std::vector<T> logged(batch, batch + count);
     auto to = batch;
     for (const std::uint32_t step : order) {
-      to = std::copy_n(logged.begin() + std::size_t{step} * per_step, per_step, to);
+      to = std::copy_n(logged.begin() + std::ptrdiff_t{step} * per_step, per_step, to);
     }
   }
 
@@ -100,6 +151,12 @@ class WorkingMesh {
   MetricFrame frame_;
   BorderLoops borders_;
   CollapseLog log_;
+
+  // Once ids are compact: those of the input by them, and what there was.
+  std::vector<VertexId> names_;
+  std::vector<FaceId> face_names_;
+  std::uint32_t input_faces_ = 0;
+  std::vector<Vec3d> input_positions_;
 };
 
 }  // namespace pmesh

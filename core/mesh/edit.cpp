@@ -20,7 +20,6 @@ void HalfEdgeMesh::kill_face(FaceId f) {
     origins_[3 * f.value + k] = VertexId();
     twins_[3 * f.value + k] = HalfEdgeId();
   }
-  --live_faces_;
 }
 
 FaceId HalfEdgeMesh::append_face(VertexId a, VertexId b, VertexId c) {
@@ -45,7 +44,7 @@ HalfEdgeId HalfEdgeMesh::find_edge(VertexId a, VertexId b) const {
   }
 }
 
-HalfEdgeCollapse HalfEdgeMesh::collapse(VertexId removed, HalfEdgeId edge) {
+HalfEdgeCollapse HalfEdgeMesh::collapse_uncounted(VertexId removed, HalfEdgeId edge) {
   const bool leaves_removed = origin(edge) == removed;
   assert(leaves_removed || target(edge) == removed);
   const HalfEdgeId to_kept = leaves_removed ? edge : twin(edge);
@@ -81,7 +80,6 @@ HalfEdgeCollapse HalfEdgeMesh::collapse(VertexId removed, HalfEdgeId edge) {
   if (to_kept.valid()) kill_face(face(to_kept));
   if (to_removed.valid()) kill_face(face(to_removed));
   outgoing_[removed.value] = HalfEdgeId();
-  --live_vertices_;
   return done;
 }
 

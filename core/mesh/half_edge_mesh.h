@@ -81,6 +81,20 @@ struct LiveMesh {
   std::vector<FaceId> faces;       ///< By new face: its id in the mesh.
 };
 
+/// What compact() did to ids. The new ones have no gaps, and the order of the old ones.
+struct CompactIds {
+  std::vector<VertexId> vertices;      ///< By new id: the old one.
+  std::vector<FaceId> faces;           ///< The same.
+  std::vector<VertexId> new_vertices;  ///< By old id of a vertex that was live.
+};
+
+/// Moves what is stored by old id to where its new id is; `old_ids` by new id, ascending.
+template <class T, class AnyId>
+void close_up(std::vector<T>& stored, const std::vector<AnyId>& old_ids) {
+  for (std::size_t i = 0; i < old_ids.size(); ++i) stored[i] = stored[old_ids[i].value];
+  stored.resize(old_ids.size());
+}
+
 class HalfEdgeMesh {
  public:
   HalfEdgeMesh() = default;
@@ -107,11 +121,11 @@ class HalfEdgeMesh {
   bool is_live(FaceId f) const { return origins_[3 * f.value].valid(); }
 
   // Navigation. Arguments must be live.
-  static HalfEdgeId next(HalfEdgeId h) {
-    return HalfEdgeId(h.value % 3 == 2 ? h.value - 2 : h.value + 1);
-  }
+  // (Corner 2 is followed, and corner 0 preceded, by one two places away. No branches: nobody could
+  // guess which corner comes next.)
+  static HalfEdgeId next(HalfEdgeId h) { return HalfEdgeId(h.value + 1 - 3 * (h.value % 3 / 2)); }
   static HalfEdgeId prev(HalfEdgeId h) {
-    return HalfEdgeId(h.value % 3 == 0 ? h.value + 2 : h.value - 1);
+    return HalfEdgeId(h.value - 1 + 3 * ((2 - h.value % 3) / 2));
   }
   static FaceId face(HalfEdgeId h) { return FaceId(h.value / 3); }
   VertexId origin(HalfEdgeId h) const { return origins_[h.value]; }
@@ -135,6 +149,13 @@ class HalfEdgeMesh {
     __builtin_prefetch(&origins_[h.value]);
     __builtin_prefetch(&twins_[h.value]);
   }
+  /// Of a half-edge's face the corners only.
+  void prefetch_corners(HalfEdgeId h) const { __builtin_prefetch(&origins_[h.value]); }
+  /// Of the faces across a half-edge and the one before it, whose own face should be there.
+  void prefetch_neighbours(HalfEdgeId h) const {
+    if (const HalfEdgeId t = twin(h); t.valid()) prefetch(t);
+    if (const HalfEdgeId t = twin(prev(h)); t.valid()) prefetch(t);
+  }
   /// The corners of face f are elements 3f, 3f+1 and 3f+2; dead faces hold invalid ids.
   std::span<const VertexId> corners() const { return origins_; }
 
@@ -147,7 +168,20 @@ class HalfEdgeMesh {
   /// edge's faces, and no vertex loses its last face; a tetrahedron becomes two faces back to
   /// back); `removed` is no border vertex unless the edge is a border edge. Dead slots remain for
   /// `removed` and the edge's faces.
-  HalfEdgeCollapse collapse(VertexId removed, HalfEdgeId edge);
+  HalfEdgeCollapse collapse(VertexId removed, HalfEdgeId edge) {
+    const HalfEdgeCollapse done = collapse_uncounted(removed, edge);
+    count(done);
+    return done;
+  }
+
+  /// Its two steps. Several threads may take the first at the same time, for collapses of which no
+  /// two have a vertex in common, be it removed or one of its neighbours. Before anything else is
+  /// asked of the mesh, count() is to be called for each.
+  HalfEdgeCollapse collapse_uncounted(VertexId removed, HalfEdgeId edge);
+  void count(const HalfEdgeCollapse& done) {
+    --live_vertices_;
+    live_faces_ -= static_cast<std::uint32_t>(done.removed_faces());
+  }
 
   /// Why `site` cannot be split here, or success. Never reads out of bounds, whatever the site.
   /// O(moved faces).
@@ -167,6 +201,14 @@ class HalfEdgeMesh {
 
   /// Undoes the last append(), which was of a mesh of that many vertices and faces.
   void undo_append(std::uint32_t vertices, std::uint32_t faces);
+
+  /// Gives what is live compact ids; no dead slots remain. O(slots).
+  CompactIds compact();
+
+  /// The reverse: vertex v becomes vertices[v] and face f becomes faces[f], among dead slots.
+  /// Precondition: no dead slots; ids below the slots, each once.
+  void spread(std::span<const VertexId> vertices, std::span<const FaceId> faces,
+              std::uint32_t vertex_slots, std::uint32_t face_slots);
 
   /// The site whose split undoes `collapse`, in this mesh, the state just after it.
   /// The moved fan must have at most kMaxMovedFaces faces. O(moved faces + the smaller valence

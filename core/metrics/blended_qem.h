@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "core/decimate/metric.h"
+#include "core/decimate/ring_lanes.h"
 #include "core/metrics/qem.h"
 #include "core/metrics/quadric.h"
 
@@ -23,6 +24,7 @@ class BlendedQem {
  public:
   static constexpr std::string_view kName = "blended-qem";
   static constexpr RingGeometry kGeometry = RingGeometry::faces;
+  static constexpr bool kInheritsKeys = false;
   static constexpr double kDefaultMemory = 0.3;
 
   /// `memory`, at least 0, weighs the vertex's own quadric beside its faces' planes.
@@ -30,8 +32,9 @@ class BlendedQem {
 
   double memory() const { return memory_; }
 
-  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame) {
-    remembered_.start(mesh, positions, frame);
+  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame,
+             unsigned threads = 1) {
+    remembered_.start(mesh, positions, frame, threads);
   }
 
   struct Prepared {
@@ -41,11 +44,15 @@ class BlendedQem {
 
   double cost(const OneRing& ring, const Prepared& prepared, std::uint32_t head,
               const MovedFaces& moved) const;
+  /// The costs of all heads of all lanes, to the bit what cost() says.
+  void price(const RingLanes& rings, LaneCosts& costs) const;
+
   double priority(const Prepared& /*prepared*/, double cost, double /*popped*/) const {
     return cost;
   }
   void prefetch(VertexId v) const { remembered_.prefetch(v); }
   void fold(VertexId removed, VertexId kept) { remembered_.fold(removed, kept); }
+  void renumber(const CompactIds& ids) { remembered_.renumber(ids); }
 
  private:
   double memory_;

@@ -13,6 +13,7 @@ class Melod {
  public:
   static constexpr std::string_view kName = "melod";
   static constexpr RingGeometry kGeometry = RingGeometry::moved_faces;
+  static constexpr bool kInheritsKeys = true;
   static constexpr double kDefaultLambda = 10;
 
   /// `lambda` weighs the preservation of borders; the paper uses 1 to 50.
@@ -35,9 +36,10 @@ class Melod {
   }
 
   /// There is no geometric history.
-  void start(const HalfEdgeMesh&, std::span<const Vec3d>, const MetricFrame&) {}
+  void start(const HalfEdgeMesh&, std::span<const Vec3d>, const MetricFrame&, unsigned = 1) {}
   void prefetch(VertexId) const {}
   void fold(VertexId /*removed*/, VertexId /*kept*/) {}
+  void renumber(const CompactIds& /*ids*/) {}
 
   /// The visual importance w = 1 - |k| of the ring's centre, k being the area-weighted mean of its
   /// faces' unit normals: 0 on a flat surface, at most 1. 0 if the faces have no area.

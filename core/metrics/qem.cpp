@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "core/parallel/for_blocks.h"
+
 namespace pmesh {
 namespace {
 
@@ -13,21 +15,38 @@ constexpr double kBorderWeight = 1000;
 // it is drawn to the edge's midpoint by a spring of this share of the quadric's trace.
 constexpr double kSpring = 1e-6;
 
+// Each part of the vertices looks at all faces: more would not pay.
+constexpr std::uint32_t kMaxParts = 8;
+
 }  // namespace
 
 void QuadricField::start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions,
-                         const MetricFrame& frame) {
+                         const MetricFrame& frame, unsigned threads) {
   quadrics_.assign(mesh.vertex_slots(), {});
+  const std::uint32_t parts = std::min(threads, kMaxParts);
+  const std::uint32_t part = mesh.vertex_slots() / parts + 1;
+  for_blocks<1>(parts, threads, [&](std::uint32_t i, std::uint32_t) {
+    add_planes(mesh, positions, frame, i * part, part);
+  });
+}
+
+void QuadricField::add_planes(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions,
+                              const MetricFrame& frame, std::uint32_t first_vertex,
+                              std::uint32_t vertices) {
+  const auto is_ours = [&](VertexId v) { return v.value - first_vertex < vertices; };
   const auto at = [&](VertexId v) { return frame.to_unit(positions[v.value]); };
   const auto add_plane = [&](Vec3d normal, Vec3d point, double weight,
-                             std::initializer_list<VertexId> vertices) {
+                             std::initializer_list<VertexId> corners) {
     const Quadric q = Quadric::plane(normal, -dot(normal, point), weight);
-    for (const VertexId v : vertices) quadrics_[v.value] += q;
+    for (const VertexId v : corners) {
+      if (is_ours(v)) quadrics_[v.value] += q;
+    }
   };
   for (std::uint32_t f = 0; f < mesh.face_slots(); ++f) {
     if (!mesh.is_live(FaceId(f))) continue;
     const VertexId a = mesh.corners()[3 * f], b = mesh.corners()[3 * f + 1],
                    c = mesh.corners()[3 * f + 2];
+    if (!is_ours(a) && !is_ours(b) && !is_ours(c)) continue;
     const Vec3d doubled = cross(at(b) - at(a), at(c) - at(a));
     const double area = 0.5 * length(doubled);
     if (!(area > 0)) continue;

@@ -16,7 +16,8 @@ namespace pmesh {
 /// By vertex, the quadric of its planes in the unit frame (sections 5 and 6 of the paper).
 class QuadricField {
  public:
-  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame);
+  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame,
+             unsigned threads = 1);
   const Quadric& operator[](VertexId v) const { return quadrics_[v.value]; }
   /// A quadric is longer than a cache line.
   void prefetch(VertexId v) const {
@@ -24,8 +25,13 @@ class QuadricField {
     __builtin_prefetch(&quadrics_[v.value].c);
   }
   void fold(VertexId removed, VertexId kept) { quadrics_[kept.value] += quadrics_[removed.value]; }
+  void renumber(const CompactIds& ids) { close_up(quadrics_, ids.vertices); }
 
  private:
+  // To the quadrics of `vertices` vertices.
+  void add_planes(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions,
+                  const MetricFrame& frame, std::uint32_t first_vertex, std::uint32_t vertices);
+
   std::vector<Quadric> quadrics_;
 };
 
@@ -34,9 +40,11 @@ class QemSubset {
  public:
   static constexpr std::string_view kName = "qem";
   static constexpr RingGeometry kGeometry = RingGeometry::neighbours;
+  static constexpr bool kInheritsKeys = false;
 
-  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame) {
-    quadrics_.start(mesh, positions, frame);
+  void start(const HalfEdgeMesh& mesh, std::span<const Vec3d> positions, const MetricFrame& frame,
+             unsigned threads = 1) {
+    quadrics_.start(mesh, positions, frame, threads);
   }
 
   struct Prepared {
@@ -59,6 +67,7 @@ class QemSubset {
     return cost;
   }
   void fold(VertexId removed, VertexId kept) { quadrics_.fold(removed, kept); }
+  void renumber(const CompactIds& ids) { quadrics_.renumber(ids); }
 
  private:
   QuadricField quadrics_;

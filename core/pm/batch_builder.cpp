@@ -76,37 +76,54 @@ void BatchBuilder::add(std::span<const std::uint32_t> splits) {
 
 std::vector<BatchSplit> BatchBuilder::next(std::size_t most, const RefinableMesh& mesh,
                                            BatchMesh& state) {
-  std::vector<std::pair<BatchSplit, VertexId>> batch;  // and its removed vertex
+  Batch batch;
   ++batch_number_;
   while (!to_come_.empty() && batch.size() < most) {
     const std::optional<BatchSplit> entry = split_at(to_come_.back(), mesh);
     if (!entry) break;
     const SplitSite& site = entry->split.site;
-    std::uint32_t& kept_in = kept_in_[kept_vertex(mesh.connectivity(), site).value];
+    std::uint32_t& kept_in = kept_in_[entry->kept.value];
     if (kept_in == batch_number_ || !covers_free_faces(site, mesh, state)) break;
     kept_in = batch_number_;
     state.cover(mesh, site);
-    batch.emplace_back(*entry, log_.collapses[to_come_.back()].removed);
+    batch.emplace_back(*entry, to_come_.back());
     to_come_.pop_back();
   }
   assert(to_come_.empty() || !batch.empty());
   state.uncover(mesh);
-  std::sort(batch.begin(), batch.end(), [&](const auto& a, const auto& b) {
-    return kept_vertex(mesh.connectivity(), a.first.split.site) <
-           kept_vertex(mesh.connectivity(), b.first.split.site);
-  });
+  sort(batch, state);
   std::vector<BatchSplit> splits;
-  removed_.clear();
-  for (const auto& [entry, removed] : batch) {
+  batch_.clear();
+  for (const auto& [entry, place] : batch) {
     splits.push_back(entry);
-    removed_.push_back(removed);
+    batch_.push_back(place);
   }
   return splits;
 }
 
+void BatchBuilder::sort(Batch& batch, BatchMesh& state) {
+  const bool sparse = state.is_sparse(batch.size());
+  if (!sparse) {
+    place_.resize(state.sweep().size());
+    std::uint32_t place = 0;
+    for (const VertexId v : state.sweep()) place_[v.value] = place++;
+  }
+  const auto place = [&](VertexId v) { return sparse ? v.value : place_[v.value]; };
+  std::sort(batch.begin(), batch.end(), [&](const auto& a, const auto& b) {
+    return place(a.first.kept) < place(b.first.kept);
+  });
+}
+
+void BatchBuilder::take_back(std::size_t kept) {
+  std::sort(batch_.begin() + static_cast<std::ptrdiff_t>(kept), batch_.end());
+  add(std::span(batch_).subspan(kept));
+  batch_.resize(kept);
+}
+
 void BatchBuilder::applied(std::span<const std::uint32_t> order, std::uint32_t first_vertex) {
   for (std::uint32_t i = 0; i < order.size(); ++i) {
-    file_ids_[removed_[order[i]].value] = VertexId(first_vertex + i);
+    const VertexId removed = log_.collapses[batch_[order[i]]].removed;
+    file_ids_[removed.value] = VertexId(first_vertex + i);
   }
 }
 
@@ -131,7 +148,7 @@ std::optional<BatchSplit> BatchBuilder::split_at(std::size_t index,
   }
   const std::optional<SplitSite> site = find_fan(mesh.connectivity(), renamed);
   if (!site) return {};
-  BatchSplit entry{{*site, positions_[collapse.removed.value]}};
+  BatchSplit entry{{*site, positions_[collapse.removed.value]}, renamed.kept};
   if (!log_.kept_before.empty()) {
     entry.split.relocation =
         lattice_.quantise(log_.kept_before[index]) - mesh.positions()[renamed.kept.value];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/decimate/collapse_log.h"
@@ -28,10 +29,13 @@ class BatchBuilder {
 
   std::size_t left() const { return to_come_.size(); }  ///< Splits to come.
 
-  /// The longest run of the next splits, `most` at most, that do not touch, in the order of their
-  /// kept vertices' ids, against `mesh`, which has all splits before. Leaves `state` uncovered.
+  /// The longest run of the next splits, `most` at most, that do not touch, in the order in
+  /// which they are coded, against `mesh`, which has all splits before. Leaves `state` uncovered.
   /// Never empty while there are splits left. Precondition: most > 0.
   std::vector<BatchSplit> next(std::size_t most, const RefinableMesh& mesh, BatchMesh& state);
+
+  /// Takes all but the first `kept` splits of next()'s batch back.
+  void take_back(std::size_t kept);
 
   /// Tells it that next()'s batch was applied in the order `order`: its new vertices' ids begin at
   /// `first_vertex`.
@@ -41,6 +45,9 @@ class BatchBuilder {
   std::size_t batch_size_ahead() const;
 
  private:
+  using Batch = std::vector<std::pair<BatchSplit, std::uint32_t>>;  // and its place in the log
+
+  void sort(Batch& batch, BatchMesh& state);
   std::optional<BatchSplit> split_at(std::size_t index, const RefinableMesh& mesh) const;
   VertexId file_id(VertexId original) const {
     return original.valid() ? file_ids_[original.value] : original;
@@ -53,9 +60,10 @@ class BatchBuilder {
   const Lattice& lattice_;
   std::vector<VertexId> file_ids_;
   std::vector<std::uint32_t> to_come_;  // places in the log, ascending: the last is next
-  std::vector<VertexId> removed_;       // of the batch, in its order
+  std::vector<std::uint32_t> batch_;    // places in the log, in the batch's order
   std::vector<std::uint32_t> kept_in_;  // by file id: the batch that last kept it
   std::uint32_t batch_number_ = 0;
+  std::vector<std::uint32_t> place_;  // by file id, in the sweep
 };
 
 /// The site in `mesh` whose split undoes `collapse`, whose vertices stand in `mesh`; nothing if

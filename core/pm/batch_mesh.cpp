@@ -21,6 +21,7 @@ void BatchMesh::grow(const RefinableMesh& mesh) {
   covered_at_.resize(mesh.vertex_count());
   covered_.resize(mesh.face_count());
   for (const VertexId v : corners_of_new) ++valences_[v.value];
+  while (families_.size() < valences_.size()) families_.push_back(family_count_++);
 }
 
 void BatchMesh::cover(const RefinableMesh& mesh, const SplitSite& site) {
@@ -55,10 +56,15 @@ void BatchMesh::uncover(const RefinableMesh& mesh) {
 Status BatchMesh::apply(std::span<const BatchSplit> batch, RefinableMesh& mesh) {
   uncover(mesh);
   sort(batch);
+  last_kept_ = batch.back().kept;
   constexpr std::size_t kAhead = 8;
+  const HalfEdgeMesh& connectivity = mesh.connectivity();
   for (std::size_t i = 0; i < order_.size(); ++i) {
+    if (i + 2 * kAhead < order_.size()) {
+      connectivity.prefetch(batch[order_[i + 2 * kAhead]].split.site.half_edge);
+    }
     if (i + kAhead < order_.size()) {
-      mesh.connectivity().prefetch(batch[order_[i + kAhead]].split.site.half_edge);
+      connectivity.prefetch_neighbours(batch[order_[i + kAhead]].split.site.half_edge);
     }
     if (Status status = mesh.append(batch[order_[i]].split); !status) return status;
     count_faces_of_last(mesh);
@@ -77,6 +83,25 @@ void BatchMesh::sort(std::span<const BatchSplit> batch) {
   }
 }
 
+// A counting sort, once a batch.
+std::span<const VertexId> BatchMesh::sweep() {
+  if (sweep_.size() == families_.size()) return sweep_;
+  family_starts_.assign(family_count_ + 1, 0);
+  for (const std::uint32_t family : families_) ++family_starts_[family + 1];
+  for (std::size_t f = 1; f < family_count_; ++f) family_starts_[f + 1] += family_starts_[f];
+  sweep_.resize(families_.size());
+  for (std::uint32_t v = 0; v < families_.size(); ++v) {
+    sweep_[family_starts_[families_[v]]++] = VertexId(v);
+  }
+  return sweep_;
+}
+
+std::span<const VertexId> BatchMesh::rest_of_sweep() {
+  const std::span<const VertexId> all = sweep();
+  const auto last = std::find(all.begin(), all.end(), last_kept_);
+  return all.subspan(static_cast<std::size_t>(last - all.begin()) + 1);
+}
+
 // Valences after the split just applied, from the faces that it added: L = (added, kept, left) and
 // R = (added, right, kept).
 void BatchMesh::count_faces_of_last(const RefinableMesh& mesh) {
@@ -92,6 +117,7 @@ void BatchMesh::count_faces_of_last(const RefinableMesh& mesh) {
   const VertexId kept = site.kind == SplitKind::border_last ? corners[corners.size() - 2]
                                                             : corners[corners.size() - 1];
   valences_[kept.value] -= site.moved_faces;
+  families_.push_back(families_[kept.value]);
 }
 
 }  // namespace pmesh

@@ -2,8 +2,8 @@
 //
 // A batch is a set of splits that do not touch: each keeps another vertex, and no face is covered
 // by two of them. A split covers the faces of its fan; an ear, which has none, the face that it is
-// glued to. All are coded against the mesh as it was before the batch, in the order of their kept
-// vertices' ids, and then applied dearest first.
+// glued to. All are coded against the mesh as it was before the batch, in the order of its kept
+// vertices (see is_sparse()), and then applied dearest first.
 //
 // Threads: the usual; no shared state.
 #pragma once
@@ -19,7 +19,8 @@ namespace pmesh {
 
 struct BatchSplit {
   VertexSplit split;
-  int cost = 0;  ///< split_cost(): what the order of application goes by.
+  VertexId kept;  ///< Of the split, before the batch.
+  int cost = 0;   ///< split_cost(): what the order of application goes by.
 };
 
 class BatchMesh {
@@ -32,8 +33,25 @@ class BatchMesh {
 
   std::uint32_t valence(VertexId v) const { return valences_[v.value]; }  ///< In faces.
   std::uint32_t free_faces(VertexId v) const { return valences_[v.value] - covered_at_[v.value]; }
+  /// Asks for what there is of a vertex to be brought into the caches.
+  void prefetch(VertexId v) const {
+    __builtin_prefetch(&valences_[v.value]);
+    __builtin_prefetch(&covered_at_[v.value]);
+  }
   bool is_free(FaceId f) const { return covered_[f.value] == 0; }
   const std::vector<std::uint8_t>& covered() const { return covered_; }
+
+  /// Whether a batch of that many splits names the kept vertices, in the order of their ids; others
+  /// have a mark at every vertex, in the order of the sweep.
+  bool is_sparse(std::size_t splits) const { return 32 * std::uint64_t{splits} < valences_.size(); }
+  /// All vertices, family by family, in each by id. A family is a vertex that came with a base or
+  /// as a new component and all that were split from it. Neighbours are often of one family: a walk
+  /// in this order finds in the caches what ids in order would scatter over the whole mesh.
+  std::span<const VertexId> sweep();
+  /// The part of it after the kept vertex of the last split of the batch applied last.
+  /// Precondition: a batch was applied.
+  std::span<const VertexId> rest_of_sweep();
+  bool has_batch() const { return last_kept_.valid(); }  ///< Whether one was applied.
 
   /// Covers the faces of a split. Precondition: they are free.
   void cover(const RefinableMesh& mesh, const SplitSite& site);
@@ -55,6 +73,11 @@ class BatchMesh {
   std::vector<std::uint8_t> covered_;                 // by face
   std::vector<FaceId> covered_faces_;
   std::vector<std::uint32_t> order_;
+  VertexId last_kept_;
+  std::vector<std::uint32_t> families_;  // by vertex, numbered as their first vertices come
+  std::uint32_t family_count_ = 0;
+  std::vector<VertexId> sweep_;  // stale if there are more vertices
+  std::vector<std::uint32_t> family_starts_;
 };
 
 }  // namespace pmesh

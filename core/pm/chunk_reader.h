@@ -19,7 +19,7 @@ class ChunkReader {
  public:
   static constexpr bool kDecodes = true;
 
-  explicit ChunkReader(ByteView bytes) : front_(bytes.data()), back_(bytes.data() + bytes.size()) {
+  explicit ChunkReader(ByteView bytes) : bytes_(bytes), back_(bytes.size()) {
     for (int unit = 0; unit < 3; ++unit) code_ = code_ << 16 | next_unit();
     if (code_ >= range_) failed_ = true;  // no writer's; it would stay so, and overflow
   }
@@ -45,8 +45,8 @@ class ChunkReader {
   std::uint32_t raw(int count, std::uint32_t /*ignored*/ = 0) {
     assert(count >= 0 && count <= 32);
     while (raw_bits_ < count) {
-      if (front_ < back_) {
-        raw_ |= std::uint64_t{*--back_} << raw_bits_;
+      if (front_ <= back_ + kAhead && back_ > 0) {
+        raw_ |= std::uint64_t{bytes_[--back_]} << raw_bits_;
       } else {
         failed_ = true;
       }
@@ -63,27 +63,33 @@ class ChunkReader {
 
   bool failed() const { return failed_; }
 
-  /// Whether nothing but zero filling is left between the two streams.
+  /// Whether the two streams meet, but for bytes that the range coder only looked ahead at, or
+  /// nothing but zero filling is left between them.
   bool at_end() const {
-    for (const std::uint8_t* p = front_; p < back_; ++p) {
-      if (*p != 0) return false;
+    for (std::size_t i = front_; i < back_; ++i) {
+      if (bytes_[i] != 0) return false;
     }
-    return raw_ == 0;
+    return front_ < back_ + kAhead && raw_ == 0;
   }
 
  private:
   std::uint32_t next_unit() {
-    if (back_ - front_ < 2) {
-      failed_ = true;
-      return 0;
-    }
-    const std::uint32_t unit = std::uint32_t{front_[0]} << 8 | front_[1];
-    front_ += 2;
-    return unit;
+    if (front_ >= back_ + kAhead) failed_ = true;
+    const std::uint32_t unit = next_byte() << 8;
+    return unit | next_byte();
   }
 
-  const std::uint8_t* front_;
-  const std::uint8_t* back_;
+  // Behind the chunk's last byte are zeros.
+  std::uint32_t next_byte() {
+    const std::size_t at = front_++;
+    return at < bytes_.size() ? bytes_[at] : 0;
+  }
+
+  /// The range coder reads this far ahead of the bytes that it needs.
+  static constexpr std::size_t kAhead = 6;
+
+  ByteView bytes_;
+  std::size_t front_ = 0, back_;  // read from the front, and left by the back
   std::uint64_t range_ = (std::uint64_t{1} << 48) - 1;
   std::uint64_t code_ = 0;
   std::uint64_t raw_ = 0;

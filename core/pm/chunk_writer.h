@@ -39,8 +39,8 @@ class ChunkWriter {
 
   void enter(SplitSection /*section*/) {}
 
-  /// Bytes that finish() would make.
-  std::size_t byte_count() const { return front_.size() + 6 + (raw_.bit_count() + 7) / 8; }
+  /// At most what finish() would make.
+  std::size_t byte_count() const { return front_.size() + 3 + (raw_.bit_count() + 7) / 8; }
 
   /// The chunk, filled up with zeros to at least `least` bytes.
   Bytes finish(std::size_t least = 0) &&;

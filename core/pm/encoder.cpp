@@ -19,7 +19,10 @@
 namespace pmesh {
 namespace {
 
-constexpr std::size_t kFirstChunkBytes = 1024;
+// A chunk has half the bytes before it, so that LODs lie close, but at most a tenth of all, so that
+// little is left to decode when the last byte has come.
+constexpr std::size_t kFirstChunkBytes = 800;
+constexpr std::size_t kLeastLargestChunkBytes = 8 * 1024;
 constexpr std::size_t kLargestChunkBytes = 256 * 1024;
 constexpr std::size_t kBitsOfSplit = 17;  // what a split takes, about
 
@@ -78,18 +81,19 @@ class BodyWriter {
   /// `most_rows`.
   Result<bool> write(std::size_t largest, std::size_t most_rows, std::vector<ChunkRow>& rows,
                      Bytes& body) {
-    std::size_t target = kFirstChunkBytes;
+    const std::size_t tenth = header_.vertices * kBitsOfSplit / 8 / 10;
+    largest = std::min(largest, std::max(tenth, kLeastLargestChunkBytes));
     while (builder_.left() > 0 || arrived_ < components_.count()) {
       if (rows.size() == most_rows) return false;
+      const std::size_t target = std::clamp(body.size() / 2, kFirstChunkBytes, largest);
       ChunkRow row;
       Bytes bytes;
       if (arrived_ < components_.count()) {
         if (Status put = put_components(target / 2, row, bytes); !put) return put.error();
       }
-      put_splits(target, largest * 8 / kBitsOfSplit, bytes);
+      put_splits(target, bytes);
       finish(bytes, row, body);
       rows.push_back(row);
-      target = std::min(target + target / 2, largest);
     }
     return true;
   }
@@ -129,12 +133,12 @@ class BodyWriter {
   }
 
   // Batches that fill the chunk up to about `target` bytes.
-  void put_splits(std::size_t target, std::size_t most, Bytes& bytes) {
+  void put_splits(std::size_t target, Bytes& bytes) {
     if (builder_.left() == 0) return;
     ChunkWriter chunk;
     const std::uint32_t before = mesh_.vertex_count();
     do {
-      put_batch(chunk, most);
+      put_batch(chunk, target * 8 / kBitsOfSplit);
     } while (builder_.left() > 0 && !is_full(bytes.size() + chunk.byte_count(), before, target));
     const std::uint32_t splits = mesh_.vertex_count() - before;
     const Bytes coded = std::move(chunk).finish(splits / 8 + 1);
@@ -145,21 +149,40 @@ class BodyWriter {
   // in the middle of a step.
   bool is_full(std::size_t bytes, std::uint32_t before, std::size_t target) const {
     if ((mesh_.vertex_count() - before) % step_ != 0) return false;
-    const std::size_t ahead = builder_.batch_size_ahead() * kBitsOfSplit / 8;
-    return bytes + ahead / 2 > target;
+    const std::size_t ahead =
+        parts_left_ > 0 ? taken_back_ / parts_left_ : builder_.batch_size_ahead();
+    return bytes + ahead * kBitsOfSplit / 8 / 2 > target;
   }
 
+  // The next batch, or if it has more than `most` splits one of its parts.
   void put_batch(ChunkWriter& chunk, std::size_t most) {
-    std::vector<BatchSplit> batch = builder_.next(most, mesh_, state_);
-    const BatchParameters parameters = fit_parameters(mesh_, batch, model_.parameters);
+    const bool continues = parts_left_ > 0;
+    std::vector<BatchSplit> batch =
+        builder_.next(continues ? taken_back_ : builder_.left(), mesh_, state_);
+    if (!continues) parts_left_ = count_parts(batch.size(), most);
+    const std::size_t part = batch.size() / parts_left_--;
+    taken_back_ = batch.size() - part;
+    builder_.take_back(part);
+    batch.resize(part);
+    const BatchParameters parameters{fit_predictor(mesh_, batch, model_.parameters.predictor),
+                                     fit_fan_weights(mesh_, batch, model_.parameters.fan)};
     SplitCoder<ChunkWriter> coder(chunk, header_, model_, mesh_, state_);
     [[maybe_unused]] Status done =
-        coder.code(batch, static_cast<std::uint32_t>(batch.size()), parameters);
+        coder.code(batch, static_cast<std::uint32_t>(batch.size()), parameters, continues);
     assert(done.ok());
     const std::uint32_t first_vertex = mesh_.vertex_count();
     done = state_.apply(batch, mesh_);
     assert(done.ok());
     builder_.applied(state_.order(), first_vertex);
+  }
+
+  // Parts come in the order of the sweep, so each must be dense enough to be coded by it, and no
+  // splits of new components may join them.
+  std::size_t count_parts(std::size_t splits, std::size_t most) const {
+    if (step_ > 1 || arrived_ < components_.count()) return 1;
+    std::size_t parts = (splits + most - 1) / most;
+    while (parts > 1 && state_.is_sparse(splits / parts / 2)) --parts;
+    return parts;
   }
 
   void finish(const Bytes& bytes, ChunkRow& row, Bytes& body) const {
@@ -180,6 +203,7 @@ class BodyWriter {
   RefinableMesh mesh_;
   BatchMesh state_;
   BatchBuilder builder_;
+  std::size_t parts_left_ = 0, taken_back_ = 0;  // of the batch that was begun
 };
 
 FileHeader describe(const EncodeInput& input, const Components& components, const Base& chosen) {

@@ -20,6 +20,9 @@ bool VertexRing::gather(const RefinableMesh& mesh, VertexId v) {
   do {
     if (faces_ == kMost) return false;
     half_edges_[faces_++] = h;
+    mesh.prefetch(connectivity.target(h));  // for the ranking
+    const HalfEdgeId across = connectivity.twin(HalfEdgeMesh::next(h));
+    if (across.valid()) connectivity.prefetch_corners(across);  // for the patch
     h = connectivity.rotate_ccw(h);
   } while (h.valid() && h != first);
   if (!border_) {

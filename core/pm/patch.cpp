@@ -38,12 +38,9 @@ std::int64_t distance_to_plane(const Patch& patch, Vec3l offset) {
 
 }  // namespace
 
-bool operator==(const Predictor& a, const Predictor& b) {
-  const auto same = [](const Predictor::Weights& x, const Predictor::Weights& y) {
-    return x.tangential == y.tangential && x.normal == y.normal;
-  };
-  return same(a.small, b.small) && same(a.large, b.large) && same(a.border, b.border) &&
-         a.mirrored == b.mirrored;
+std::size_t Patch::fan_class() const {
+  if (kind != SplitKind::interior) return kBorderFans;
+  return std::clamp<std::size_t>(faces, 2, 5) - 2;
 }
 
 Vec3l Patch::local(Vec3i point) const {
@@ -183,9 +180,7 @@ void Patch::measure_area_centre() {
 }
 
 Prediction predict(const Patch& patch, const Predictor& predictor) {
-  const Predictor::Weights& weights = patch.kind != SplitKind::interior ? predictor.border
-                                      : patch.faces <= kSmallFan        ? predictor.small
-                                                                        : predictor.large;
+  const Predictor::Weights& weights = predictor.fans[patch.fan_class()];
   Vec3l tangential{};
   for (std::size_t i = 0; i < patch.features.size(); ++i) {
     tangential += weights.tangential[i] * patch.features[i];

@@ -18,23 +18,30 @@ namespace pmesh {
 inline constexpr int kLocalBits = 14;
 inline constexpr std::int64_t kLocalReach = std::int64_t{1} << (kLocalBits + 3);
 
+/// Fans that are predicted alike: interior ones of up to 2, 3, 4, and more faces; those on borders.
+inline constexpr std::size_t kFanClasses = 5;
+inline constexpr std::size_t kBorderFans = kFanClasses - 1;
+
 /// How a batch predicts: weights in units of 1/32, found by the encoder and sent with the batch.
 struct Predictor {
   /// Of a patch's features, tangential and normal to it.
   struct Weights {
     std::array<std::int64_t, 4> tangential;  ///< kept, cut, opposite, area.
     std::array<std::int64_t, 2> normal;      ///< kept, opposite.
-  };
-  Weights small, large, border;  ///< Interior fans of up to kSmallFan faces; larger; on borders.
-  std::array<std::int64_t, 2> mirrored;  ///< Of a relocated kept vertex: tangential, normal.
 
-  friend bool operator==(const Predictor&, const Predictor&);
+    friend bool operator==(const Weights&, const Weights&) = default;
+  };
+  std::array<Weights, kFanClasses> fans;  ///< By Patch::fan_class().
+  std::array<std::int64_t, 2> mirrored;   ///< Of a relocated kept vertex: tangential, normal.
+
+  friend bool operator==(const Predictor&, const Predictor&) = default;
 };
-inline constexpr std::uint32_t kSmallFan = 3;
 
 struct Patch {
   /// Gathers the patch of a split at `site`, which must be possible in `mesh`.
   void gather(const RefinableMesh& mesh, const SplitSite& site);
+
+  std::size_t fan_class() const;  ///< Below kFanClasses.
 
   /// Of `point`, in local coordinates, clamped to kLocalReach.
   Vec3l local(Vec3i point) const;

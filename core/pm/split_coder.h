@@ -12,6 +12,7 @@
 #include "core/pm/fan_choice.h"
 #include "core/pm/format.h"
 #include "core/pm/patch.h"
+#include "core/pm/point_coder.h"
 #include "core/pm/split_model.h"
 #include "core/pm/split_section.h"
 #include "core/refine/refinable_mesh.h"
@@ -26,19 +27,18 @@ class SplitCoder {
       : coder_(coder), header_(header), model_(model), mesh_(mesh), state_(state) {}
 
   /// Decodes the next batch, of at most `most` splits, into `batch`, or encodes `batch`, whose
-  /// splits are in the order of their kept vertices, with `parameters`. Fills in the costs.
-  /// Afterwards the batch's faces are covered: BatchMesh::apply() comes next.
+  /// splits are in the order of their kept vertices, with `parameters`; if it `continues` the last
+  /// one, all these come after that one's in the sweep. Fills in the costs. Afterwards the batch's
+  /// faces are covered: BatchMesh::apply() comes next.
   Status code(std::vector<BatchSplit>& batch, std::uint32_t most,
-              const BatchParameters& parameters = {}) {
+              const BatchParameters& parameters = {}, bool continues = false) {
     batch_ = &batch;
     coder_.enter(SplitSection::batches);
     const std::uint32_t count = code_count(static_cast<std::uint32_t>(batch.size()));
     if (count == 0 || count > most) return bad_input("a batch has more splits than its chunk");
     if constexpr (Coder::kDecodes) batch.clear();
     code_parameters(parameters);
-    const std::uint32_t vertices = mesh_.vertex_count();
-    Status status =
-        std::uint64_t{kSparseBatch} * count < vertices ? code_sparse(count) : code_dense(count);
+    Status status = state_.is_sparse(count) ? code_sparse(count) : code_dense(count, continues);
     if (status.ok() && failed()) return bad_input("the chunk ends inside a batch");
     return status;
   }
@@ -61,13 +61,11 @@ class SplitCoder {
     const auto code_all = [this](auto& current, const auto& target) {
       for (std::size_t i = 0; i < current.size(); ++i) code_weight(current[i], target[i]);
     };
-    const auto code_weights = [&](Predictor::Weights& current, const Predictor::Weights& target) {
-      code_all(current.tangential, target.tangential);
-      code_all(current.normal, target.normal);
-    };
-    code_weights(now.predictor.small, wanted.predictor.small);
-    code_weights(now.predictor.large, wanted.predictor.large);
-    if (header_.has_borders) code_weights(now.predictor.border, wanted.predictor.border);
+    for (std::size_t i = 0; i < kFanClasses; ++i) {
+      if (i == kBorderFans && !header_.has_borders) continue;
+      code_all(now.predictor.fans[i].tangential, wanted.predictor.fans[i].tangential);
+      code_all(now.predictor.fans[i].normal, wanted.predictor.fans[i].normal);
+    }
     if (header_.has_relocations) code_all(now.predictor.mirrored, wanted.predictor.mirrored);
     code_all(now.fan.of, wanted.fan.of);
   }
@@ -78,25 +76,18 @@ class SplitCoder {
     std::size_t length = 0;
     const auto wanted = static_cast<std::size_t>(bit_length(change));
     while (length < 8 && coder_.bit(model_.weight_length[length], wanted > length)) ++length;
-    current = clamp_to(current + code_tail(static_cast<int>(length), change), kMostWeight);
-  }
-
-  // Sign and low bits of a number of the given bit length.
-  std::int64_t code_tail(int length, std::int64_t value) {
-    if (length == 0) return 0;
-    const std::int64_t size = value < 0 ? -value : value;
-    const auto top = std::uint32_t{1} << (length - 1);
-    const std::uint32_t tail = coder_.raw(length, (static_cast<std::uint32_t>(size) - top) << 1 |
-                                                      static_cast<std::uint32_t>(value < 0));
-    const std::int64_t decoded = std::int64_t{top} + (tail >> 1);
-    return (tail & 1) != 0 ? -decoded : decoded;
+    current = clamp_to(current + points_.code_tail(static_cast<int>(length), change), kMostWeight);
   }
 
   // A mark at every vertex that may be split, until the last split.
-  Status code_dense(std::uint32_t count) {
-    const std::uint32_t vertices = mesh_.vertex_count();
+  Status code_dense(std::uint32_t count, bool continues) {
+    continues = coder_.bit(model_.continues, continues);
+    if (continues && !state_.has_batch()) return bad_input("a batch continues none");
     std::size_t next = 0;
-    for (VertexId v(0); v.value < vertices; ++v.value) {
+    const std::span<const VertexId> sweep = continues ? state_.rest_of_sweep() : state_.sweep();
+    for (std::size_t place = 0; place < sweep.size(); ++place) {
+      const VertexId v = sweep[place];
+      prefetch(sweep, place);
       const std::uint32_t free = state_.free_faces(v);
       if (free == 0) continue;
       AdaptiveBit& model = model_.mark[is_border(v)][std::min(
@@ -109,9 +100,25 @@ class SplitCoder {
     return bad_input("a batch has more splits than the mesh has vertices to split");
   }
 
+  // What the ring of a vertex some places further on needs first.
+  void prefetch(std::span<const VertexId> sweep, std::size_t place) const {
+    constexpr std::size_t kAhead = 8;
+    const HalfEdgeMesh& connectivity = mesh_.connectivity();
+    if (place + 2 * kAhead < sweep.size()) {
+      const VertexId v = sweep[place + 2 * kAhead];
+      connectivity.prefetch(v);
+      state_.prefetch(v);
+    }
+    if (place + kAhead < sweep.size()) {
+      const VertexId v = sweep[place + kAhead];
+      connectivity.prefetch(connectivity.outgoing(v));
+      mesh_.prefetch(v);
+    }
+  }
+
   bool is_wanted(std::size_t next, VertexId v) const {
     if constexpr (Coder::kDecodes) return false;
-    return kept_vertex(mesh_.connectivity(), (*batch_)[next].split.site) == v;
+    return (*batch_)[next].kept == v;
   }
 
   // The distance from one vertex to the next.
@@ -120,8 +127,7 @@ class SplitCoder {
     for (std::size_t next = 0; next < count; ++next) {
       std::uint32_t gap = 0;
       if constexpr (!Coder::kDecodes) {
-        gap = static_cast<std::uint32_t>(
-            kept_vertex(mesh_.connectivity(), (*batch_)[next].split.site).value - vertex);
+        gap = static_cast<std::uint32_t>((*batch_)[next].kept.value - vertex);
       }
       coder_.enter(SplitSection::marks);
       vertex += code_gap(gap);
@@ -153,6 +159,7 @@ class SplitCoder {
       batch_->emplace_back();
     }
     BatchSplit& entry = (*batch_)[next];
+    entry.kept = v;
     SplitSite& site = entry.split.site;
     coder_.enter(SplitSection::cuts);
     code_kind(v, site);
@@ -287,7 +294,8 @@ class SplitCoder {
   Status code_positions(BatchSplit& entry) {
     const Predictor& predictor = model_.parameters.predictor;
     VertexSplit& split = entry.split;
-    if (Status coded = code_point(predict(patch_, predictor), model_.added, split.position);
+    if (Status coded =
+            points_.code(patch_, predict(patch_, predictor), model_.added, split.position);
         !coded) {
       return prefixed("added vertex", coded.error());
     }
@@ -295,95 +303,13 @@ class SplitCoder {
     if (!header_.has_relocations) return {};
     coder_.enter(SplitSection::relocations);
     Vec3i kept = patch_.kept + split.relocation;
-    if (Status coded =
-            code_point(predict_kept(patch_, predictor, split.position), model_.kept, kept);
+    if (Status coded = points_.code(patch_, predict_kept(patch_, predictor, split.position),
+                                    model_.kept, kept);
         !coded) {
       return prefixed("kept vertex", coded.error());
     }
     split.relocation = kept - patch_.kept;
     return {};
-  }
-
-  // Two coordinates, then the one along which the normal is longest: what is known of the first
-  // ones shifts the next one along the tangential plane, so that the last residual is the normal
-  // part alone.
-  Status code_point(const Prediction& prediction, SplitModel::Residuals& models, Vec3i& point) {
-    const std::array<std::int64_t, 3> normal = {patch_.normal.x, patch_.normal.y, patch_.normal.z};
-    const std::size_t c = longest(normal), a = (c + 1) % 3, b = (c + 2) % 3;
-    const std::array<std::int64_t, 3> at = {prediction.at.x, prediction.at.y, prediction.at.z};
-    const std::array<std::int32_t*, 3> axes = {&point.x, &point.y, &point.z};
-    const std::array<std::int32_t, 3> kept = {patch_.kept.x, patch_.kept.y, patch_.kept.z};
-
-    const auto code = [&](std::size_t axis, std::int64_t expected, std::size_t part, int likely) {
-      return code_coordinate(kept[axis] + ((expected * (std::int64_t{1} << patch_.shift) + 4) >> 3),
-                             models, part, likely, *axes[axis]);
-    };
-    const auto off = [&](std::size_t axis, std::int64_t expected) {
-      const std::int64_t local = (8 * (std::int64_t{*axes[axis]} - kept[axis])) >> patch_.shift;
-      return clamp_to(local - expected, std::int64_t{1} << 20);
-    };
-    bool on = code(a, at[a], 0, prediction.tangential_class);
-    const std::int64_t off_a = off(a, at[a]);
-    const std::int64_t across = patch_.normal_squared - normal[a] * normal[a];
-    const std::int64_t expected_b = at[b] + divide(-normal[a] * normal[b] * off_a, across);
-    on = on && code(b, expected_b, 0, prediction.tangential_class);
-    const std::int64_t slope = -(normal[a] * off_a + normal[b] * off(b, at[b]));
-    const std::int64_t expected_c =
-        at[c] + (normal[c] > 0 ? divide(slope, normal[c]) : divide(-slope, -normal[c]));
-    on = on && code(c, expected_c, 1, prediction.normal_class);
-    return on ? Status() : bad_input("off the lattice");
-  }
-
-  static std::size_t longest(const std::array<std::int64_t, 3>& v) {
-    std::size_t axis = 0;
-    for (std::size_t i = 1; i < 3; ++i) {
-      if (std::abs(v[i]) > std::abs(v[axis])) axis = i;
-    }
-    return axis;
-  }
-
-  // False if the coordinate is off the lattice.
-  bool code_coordinate(std::int64_t expected, SplitModel::Residuals& models, std::size_t part,
-                       int likely, std::int32_t& coordinate) {
-    const std::int64_t most = (std::int64_t{1} << header_.lattice.bits) - 1;
-    expected = expected < 0 ? 0 : expected > most ? most : expected;
-    const std::int64_t wanted = std::int64_t{coordinate} - expected;
-    const int centre = std::max(0, likely / 2 - (part == 0 ? 5 : 4));
-    const int length = code_length(models.length[part][static_cast<std::size_t>(likely)], centre,
-                                   bit_length(wanted));
-    const std::int64_t coded = expected + code_residual(length, models.second[part], wanted);
-    if (coded < 0 || coded > most) return false;
-    coordinate = static_cast<std::int32_t>(coded);
-    return true;
-  }
-
-  int code_length(LengthModel& model, int centre, int wanted) {
-    const auto step = [](int distance) { return static_cast<std::size_t>(std::min(distance, 7)); };
-    int length = centre;
-    if (coder_.bit(model.above, wanted > centre)) {
-      ++length;
-      while (length < 31 && coder_.bit(model.up[step(length - centre - 1)], wanted > length)) {
-        ++length;
-      }
-    } else {
-      while (length > 0 && coder_.bit(model.down[step(centre - length)], wanted < length)) {
-        --length;
-      }
-    }
-    return length;
-  }
-
-  std::int64_t code_residual(int length, std::array<AdaptiveBit, 32>& second, std::int64_t wanted) {
-    if (length < 2) return code_tail(length, wanted);
-    const std::int64_t size = wanted < 0 ? -wanted : wanted;
-    const bool high =
-        coder_.bit(second[static_cast<std::size_t>(length)], (size >> (length - 2) & 1) != 0);
-    const std::uint32_t below = std::uint32_t{1} << (length - 2);
-    const std::uint32_t tail =
-        coder_.raw(length - 1, (static_cast<std::uint32_t>(size) & (below - 1)) << 1 |
-                                   static_cast<std::uint32_t>(wanted < 0));
-    const std::int64_t coded = std::int64_t{high ? 3 : 2} * below + (tail >> 1);
-    return (tail & 1) != 0 ? -coded : coded;
   }
 
   Coder& coder_;
@@ -392,6 +318,7 @@ class SplitCoder {
   const RefinableMesh& mesh_;
   BatchMesh& state_;
   std::vector<BatchSplit>* batch_ = nullptr;
+  PointCoder<Coder> points_{coder_, header_.lattice.bits};
   VertexRing ring_;
   Patch patch_;
 };

@@ -10,7 +10,9 @@ namespace pmesh {
 Status SplitDecoder::decode(ByteView chunk, std::uint32_t split_count, const FileHeader& header,
                             RefinableMesh& mesh) {
   state_.grow(mesh);
-  if (split_count == 0 && !chunk.empty()) return bad_input("bytes follow the new components");
+  if (split_count == 0) {
+    return chunk.empty() ? Status() : bad_input("bytes follow the new components");
+  }
   ChunkReader reader(chunk);
   SplitCoder<ChunkReader> coder(reader, header, model_, mesh, state_);
   for (std::uint32_t done = 0; done < split_count;) {

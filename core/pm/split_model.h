@@ -22,16 +22,13 @@ struct BatchParameters {
 
 /// Before a file's first batch.
 inline BatchParameters initial_parameters() {
-  constexpr Predictor::Weights kWeights{{4, -2, 2, 32}, {27, 4}};
-  return {{kWeights, kWeights, kWeights, {32, 32}}, {{72, -74, 96}}};
+  BatchParameters initial{{{}, {32, 32}}, {{72, -74, 96}}};
+  initial.predictor.fans.fill({{4, -2, 2, 32}, {27, 4}});
+  return initial;
 }
 
 /// Weights lie in [-127, 127].
 inline constexpr std::int64_t kMostWeight = 127;
-
-/// A batch of fewer splits than one in this many vertices names its vertices by gaps, a larger one
-/// by a mark at every vertex.
-inline constexpr std::uint32_t kSparseBatch = 32;
 
 /// Bit lengths of a number around the one that its class makes likely.
 struct LengthModel {
@@ -45,6 +42,7 @@ struct SplitModel {
   // Marks: border or not, valence, free faces.
   std::array<std::array<std::array<AdaptiveBit, kFree>, kValences>, 2> mark;
   std::array<AdaptiveBit, 32> gap_length;  // of a sparse batch
+  AdaptiveBit continues;                   // does another one go on in the sweep?
 
   // Cut neighbours.
   std::array<AdaptiveBit, kValences> interior;  // of a border vertex's split; by valence

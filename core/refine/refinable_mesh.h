@@ -87,6 +87,8 @@ class RefinableMesh {
   /// Three vertices a face: an index buffer. Valid until the LOD changes.
   std::span<const VertexId> corners() const { return connectivity_.corners(); }
   const HalfEdgeMesh& connectivity() const { return connectivity_; }
+  /// Asks for a vertex's position to be brought into the caches.
+  void prefetch(VertexId v) const { __builtin_prefetch(&positions_[v.value]); }
 
   /// A copy of the LOD that stands.
   LatticeMesh snapshot() const;

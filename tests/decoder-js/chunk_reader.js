@@ -30,8 +30,11 @@ export function table(...dimensions) {
   return Array.from({ length: size }, () => table(...rest));
 }
 
+// Decisions read less than this far into the raw bits, or beyond the chunk's end.
+const AHEAD = 6;
+
 export class ChunkReader {
-  #bytes; #front = 0; #back; // unread: [front, back)
+  #bytes; #front = 0; #back; // read by decisions, and left by raw bits
   #range = 2 ** 48 - 1;
   #code = 0;
   #rawByte = 0; #rawLeft = 0; // the rest of the byte last taken from the back
@@ -44,10 +47,9 @@ export class ChunkReader {
   }
 
   #unit() {
-    require(this.#back - this.#front >= 2, 'a chunk ends inside a batch');
-    const unit = this.#bytes[this.#front] * 256 + this.#bytes[this.#front + 1];
-    this.#front += 2;
-    return unit;
+    require(this.#front < this.#back + AHEAD, 'a chunk ends inside a batch');
+    const byte = () => this.#bytes[this.#front++] ?? 0;
+    return byte() * 256 + byte();
   }
 
   bit(model) {
@@ -72,7 +74,7 @@ export class ChunkReader {
     let value = 0;
     for (let done = 0; done < count;) {
       if (this.#rawLeft === 0) {
-        require(this.#front < this.#back, 'a chunk ends inside a batch');
+        require(this.#back > 0, 'a chunk ends inside a batch');
         this.#rawByte = this.#bytes[--this.#back];
         this.#rawLeft = 8;
       }
@@ -86,7 +88,9 @@ export class ChunkReader {
   }
 
   expectEnd() {
-    const rest = this.#bytes.subarray(this.#front, this.#back);
-    require(this.#rawByte === 0 && rest.every((byte) => byte === 0), 'bytes follow the last split');
+    require(this.#front < this.#back + AHEAD, 'a chunk ends inside a batch');
+    const between = this.#bytes.subarray(this.#front, Math.max(this.#front, this.#back));
+    require(this.#rawByte === 0 && between.every((byte) => byte === 0),
+      'bytes follow the last split');
   }
 }

@@ -6,6 +6,7 @@ import { FIRST, INTERIOR, LAST, faceOf, previous } from './mesh.js';
 import { Patch } from './patch.js';
 
 const MOST_MOVED = 255, MOST_RANKED = 64;
+const BORDER = 4; // the last set of weights for fans
 
 const lengthModel = () => ({ above: table(), up: table(8), down: table(8) });
 const residualModel = () => ({
@@ -16,15 +17,16 @@ const residualModel = () => ({
 export class SplitDecoder {
   #mesh; #header; #reader;
   #covered; #coveredAt; // by face; by vertex, how many of its faces
+  #families = []; // by vertex
+  #lastKept = null; // by the last split of the batch before
   #bits = {
     weightLength: table(8), mark: table(2, 16, 12), gapLength: table(32),
-    interior: table(16), last: table(), larger: table(2, 10, 16, 10), candidate: table(4, 8, 4),
+    interior: table(16), last: table(), continues: table(),
+    larger: table(2, 10, 16, 10), candidate: table(4, 8, 4),
     added: residualModel(), kept: residualModel(),
   };
   #weights = {
-    small: { tangential: [4, -2, 2, 32], normal: [27, 4] },
-    large: { tangential: [4, -2, 2, 32], normal: [27, 4] },
-    border: { tangential: [4, -2, 2, 32], normal: [27, 4] },
+    fans: Array.from({ length: 5 }, () => ({ tangential: [4, -2, 2, 32], normal: [27, 4] })),
     mirrored: [32, 32],
     fan: [72, -74, 96],
   };
@@ -39,6 +41,7 @@ export class SplitDecoder {
   /** Decodes and applies the `count` splits that `bytes` holds. */
   decode(bytes, count) {
     this.#reader = new ChunkReader(bytes);
+    for (let v = this.#families.length; v < this.#mesh.vertices; ++v) this.#families.push(v);
     while (count > 0) {
       const splits = this.#batch(count);
       this.#apply(splits);
@@ -60,9 +63,9 @@ export class SplitDecoder {
   }
 
   #readWeights() {
-    const { small, large, border, mirrored, fan } = this.#weights;
-    const lists = [small.tangential, small.normal, large.tangential, large.normal];
-    if (this.#header.hasBorders) lists.push(border.tangential, border.normal);
+    const { fans, mirrored, fan } = this.#weights;
+    const coded = this.#header.hasBorders ? fans : fans.slice(0, BORDER);
+    const lists = coded.flatMap(({ tangential, normal }) => [tangential, normal]);
     if (this.#header.hasRelocations) lists.push(mirrored);
     for (const list of [...lists, fan]) {
       list.forEach((weight, i) => { list[i] = clamp(weight + this.#weightChange(), -127, 127); });
@@ -86,11 +89,20 @@ export class SplitDecoder {
   #onBorder(v) { return this.#header.hasBorders && this.#mesh.border[v] ? 1 : 0; }
   #valenceClass(v) { return Math.min(this.#mesh.valence[v], 15); }
 
+  // All vertices by family, in each by id.
+  #sweep() {
+    return Array.from(this.#families.keys())
+      .sort((a, b) => this.#families[a] - this.#families[b]); // stable
+  }
+
   #dense(count) {
+    const continues = this.#bit(this.#bits.continues);
+    require(!continues || this.#lastKept !== null, 'a batch continues none');
+    const sweep = this.#sweep();
     const splits = [];
-    for (let v = 0; splits.length < count; ++v) {
-      require(v < this.#mesh.vertices, 'a batch has more splits than vertices to split');
-      const free = this.#free(v);
+    for (let i = continues ? sweep.indexOf(this.#lastKept) + 1 : 0; splits.length < count; ++i) {
+      require(i < sweep.length, 'a batch has more splits than vertices to split');
+      const v = sweep[i], free = this.#free(v);
       if (free === 0) continue;
       const marks = this.#bits.mark[this.#onBorder(v)][this.#valenceClass(v)];
       if (this.#bit(marks[Math.min(free, 11)])) splits.push(this.#split(v));
@@ -118,12 +130,12 @@ export class SplitDecoder {
     const site = this.#site(v);
     this.#cover(site);
     const patch = new Patch(this.#mesh, site);
-    const { small, large, border, mirrored } = this.#weights;
-    const weights = site.kind !== INTERIOR ? border : site.moved <= 3 ? small : large;
-    const added = this.#point(patch, patch.predict(weights), this.#bits.added);
+    const { fans, mirrored } = this.#weights;
+    const set = site.kind === INTERIOR ? clamp(site.moved, 2, 5) - 2 : BORDER;
+    const added = this.#point(patch, patch.predict(fans[set]), this.#bits.added);
     const keptTo = this.#header.hasRelocations
       ? this.#point(patch, patch.predictKept(mirrored, added), this.#bits.kept) : patch.kept;
-    return { site, added, keptTo, bucket: patch.bucket(added) };
+    return { kept: v, site, added, keptTo, bucket: patch.bucket(added) };
   }
 
   // 6.7 Kind and fan, 6.8 Cut neighbours
@@ -263,7 +275,11 @@ export class SplitDecoder {
         for (let k = 0; k < 3; ++k) this.#coveredAt[this.#mesh.origin(3 * face + k)] = 0;
       }
     }
+    this.#lastKept = splits.at(-1).kept;
     splits.sort((a, b) => b.bucket - a.bucket); // stable
-    for (const { site, added, keptTo } of splits) this.#mesh.split(site, added, keptTo);
+    for (const { kept, site, added, keptTo } of splits) {
+      this.#mesh.split(site, added, keptTo);
+      this.#families.push(this.#families[kept]);
+    }
   }
 }

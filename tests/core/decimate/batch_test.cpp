@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/decimate/batch_elements.h"
 #include "core/decimate/batch_keys.h"
 #include "core/decimate/decimate.h"
 #include "core/decimate/one_ring.h"
@@ -203,11 +204,40 @@ TEST(Batch, DoesNotDependOnThreads) {
   }
 }
 
+// Handles make vertices few beside the faces that must go.
+TEST(Batch, StopsAtTheTargetWhateverTheGenus) {
+  const IndexedMesh plate = shapes::bumped(shapes::genus(60), 0.1);
+  const auto faces = static_cast<std::uint32_t>(plate.triangles.size());
+  for (std::uint32_t base_faces = faces / 10; base_faces < faces; base_faces += faces / 10) {
+    const Decimation decimation = batched(plate, BlendedQem(), base_faces, 2);
+    EXPECT_LE(decimation.report.faces, base_faces);
+    EXPECT_GE(decimation.report.faces + 1, base_faces);
+    HalfEdgeMesh mesh = half_edges(plate);
+    for (const HalfEdgeCollapse& c : decimation.log.collapses) replay(mesh, c);
+    EXPECT_EQ(state_of(mesh), state_of(decimation.mesh));
+  }
+}
+
 TEST(Batch, IsNoPartOfAnExactLog) {
   DecimateOptions options;
   options.schedule = Schedule::exact;
   const IndexedMesh sphere = shapes::icosphere(3);
   EXPECT_TRUE(decimate(half_edges(sphere), sphere.positions, options).log.batch_ends.empty());
+}
+
+TEST(BatchElements, InheritTheGreatestKey) {
+  BatchElements<VertexId> elements(3);
+  const VertexId v(1);
+  elements.put(v, 9, 2);
+  EXPECT_EQ(elements.weighed_key(v), 18);
+  for (const float key : {3.0f, 5.0f, 0.0f}) elements.change_by_one_of_many<true>(v, key);
+  EXPECT_TRUE(elements.is_changed(v));
+  EXPECT_EQ(elements.key(v), 5);
+  elements.put(v, 4, 1);
+  EXPECT_FALSE(elements.is_changed(v));
+  elements.change_by_one_of_many<false>(v, 7);
+  EXPECT_TRUE(elements.is_changed(v));
+  EXPECT_EQ(elements.key(v), 4);
 }
 
 TEST(BatchKey, IsNeverBelowTheCost) {

@@ -1,5 +1,6 @@
 #include "core/pm/batch_builder.h"
 
+#include <algorithm>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -40,6 +41,8 @@ class Replay {
   const LatticeMesh& input() const { return input_; }
 
   std::vector<BatchSplit> next(std::size_t most) { return builder_->next(most, *mesh_, *state_); }
+  void take_back(std::size_t kept) { builder_->take_back(kept); }
+  BatchMesh& state() { return *state_; }
   void apply(const std::vector<BatchSplit>& batch) {
     const std::uint32_t first_vertex = mesh_->vertex_count();
     ASSERT_TRUE(state_->apply(batch, *mesh_).ok());
@@ -86,11 +89,21 @@ std::vector<FaceId> covered_faces(const HalfEdgeMesh& mesh, const SplitSite& sit
 
 void expect_apart(const std::vector<BatchSplit>& batch, const HalfEdgeMesh& mesh) {
   std::vector<int> covers(mesh.live_faces());
-  for (std::size_t i = 0; i < batch.size(); ++i) {
-    const SplitSite& site = batch[i].split.site;
-    for (const FaceId f : covered_faces(mesh, site)) EXPECT_EQ(covers[f.value]++, 0);
-    if (i == 0) continue;
-    EXPECT_LT(kept_vertex(mesh, batch[i - 1].split.site), kept_vertex(mesh, site));
+  for (const BatchSplit& entry : batch) {
+    EXPECT_EQ(entry.kept, kept_vertex(mesh, entry.split.site));
+    for (const FaceId f : covered_faces(mesh, entry.split.site)) EXPECT_EQ(covers[f.value]++, 0);
+  }
+}
+
+// Of a sparse batch by id, of a dense one by the sweep.
+void expect_in_order(const std::vector<BatchSplit>& batch, BatchMesh& state) {
+  const auto sweep = state.sweep();
+  std::vector<VertexId> order(sweep.begin(), sweep.end());
+  if (state.is_sparse(batch.size())) std::sort(order.begin(), order.end());
+  auto at = order.begin();
+  for (const BatchSplit& entry : batch) {
+    at = std::find(at, order.end(), entry.kept);
+    ASSERT_NE(at++, order.end());
   }
 }
 
@@ -102,8 +115,54 @@ TEST(BatchBuilder, SplitsOfABatchKeepApartAndComeInTheOrderOfTheirVertices) {
       ASSERT_FALSE(batch.empty());
       EXPECT_LE(batch.size(), 50u);
       expect_apart(batch, replay.mesh().connectivity());
+      expect_in_order(batch, replay.state());
       replay.apply(batch);
     }
+  }
+}
+
+TEST(BatchBuilder, WhatItTakesBackComesAgain) {
+  Replay replay(shapes::bumped(shapes::icosphere(3), 0.05));
+  while (replay.left() > 0) {
+    auto first = replay.next(1'000'000);
+    const std::size_t left = replay.left();
+    const std::vector<BatchSplit> rest(first.begin() + (first.size() + 1) / 2, first.end());
+    first.resize(first.size() - rest.size());
+    replay.take_back(first.size());
+    EXPECT_EQ(replay.left(), left + rest.size());
+    replay.apply(first);
+    if (rest.empty()) continue;
+    auto second = replay.next(rest.size());
+    EXPECT_EQ(replay.left(), left);
+    expect_apart(second, replay.mesh().connectivity());
+    expect_in_order(second, replay.state());
+    replay.apply(second);
+  }
+  EXPECT_TRUE(same_triangles(replay.mesh().snapshot(), replay.input()));
+}
+
+TEST(BatchBuilder, HalvesOfADenseBatchComeOneAfterTheOtherInTheSweep) {
+  Replay replay(shapes::bumped(shapes::icosphere(4), 0.05));
+  while (replay.left() > 0) {
+    auto batch = replay.next(1'000'000);
+    const std::size_t half = batch.size() / 2;
+    if (replay.state().is_sparse(half / 2)) {
+      replay.apply(batch);
+      continue;
+    }
+    std::set<VertexId> rest;
+    for (std::size_t i = half; i < batch.size(); ++i) rest.insert(batch[i].kept);
+    replay.take_back(half);
+    batch.resize(half);
+    replay.apply(batch);
+    const auto second = replay.next(rest.size());
+    const auto to_sweep = replay.state().rest_of_sweep();
+    for (const BatchSplit& entry : second) {
+      EXPECT_TRUE(rest.erase(entry.kept) == 1);
+      EXPECT_NE(std::find(to_sweep.begin(), to_sweep.end(), entry.kept), to_sweep.end());
+    }
+    EXPECT_TRUE(rest.empty());
+    replay.apply(second);
   }
 }
 

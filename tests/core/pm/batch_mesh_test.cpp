@@ -54,6 +54,11 @@ std::vector<SplitSite> every_site(const HalfEdgeMesh& mesh) {
   return sites;
 }
 
+void apply_one(const SplitSite& site, BatchMesh& state, RefinableMesh& mesh) {
+  const VertexId kept = kept_vertex(mesh.connectivity(), site);
+  ASSERT_TRUE(state.apply(std::vector<BatchSplit>{{{site, {}}, kept}}, mesh).ok());
+}
+
 TEST(BatchMesh, KeepsCountAfterEveryKindOfSplit) {
   const RefinableMesh before = grid();
   const auto sites = every_site(before.connectivity());
@@ -62,7 +67,7 @@ TEST(BatchMesh, KeepsCountAfterEveryKindOfSplit) {
     RefinableMesh mesh = before;
     BatchMesh state(mesh);
     state.cover(mesh, site);
-    ASSERT_TRUE(state.apply(std::vector<BatchSplit>{{{site, {}}}}, mesh).ok());
+    apply_one(site, state, mesh);
     expect_counts(state, mesh);
   }
 }
@@ -98,7 +103,7 @@ TEST(BatchMesh, AppliesTheDearestFirstAndEqualOnesInTheirOrder) {
   for (const int cost : {10, 90, 10, 500, -7}) {  // ears on other borders
     const VertexId corner(static_cast<std::uint32_t>(batch.size()));
     const HalfEdgeId border = mesh.connectivity().outgoing(corner);
-    batch.push_back({{{border, 0, SplitKind::border_first}, {}}, cost});
+    batch.push_back({{{border, 0, SplitKind::border_first}, {}}, corner, cost});
   }
   ASSERT_TRUE(state.apply(batch, mesh).ok());
   const auto order = state.order();
@@ -109,8 +114,94 @@ TEST(BatchMesh, AppliesTheDearestFirstAndEqualOnesInTheirOrder) {
 TEST(BatchMesh, RefusesASplitThatIsNotPossible) {
   RefinableMesh mesh = grid();
   BatchMesh state(mesh);
-  const std::vector<BatchSplit> batch = {{{{HalfEdgeId(0), 200, SplitKind::interior}, {}}}};
-  EXPECT_FALSE(state.apply(batch, mesh).ok());
+  const SplitSite site{HalfEdgeId(0), 200, SplitKind::interior};
+  const VertexId kept = kept_vertex(mesh.connectivity(), site);
+  EXPECT_FALSE(state.apply(std::vector<BatchSplit>{{{site, {}}, kept}}, mesh).ok());
+}
+
+TEST(BatchMesh, IsSparseBelowASplitIn32Vertices) {
+  const BatchMesh state(grid());  // of 25 vertices
+  EXPECT_TRUE(state.is_sparse(0));
+  EXPECT_FALSE(state.is_sparse(1));
+  const SplitBase base = make_split_base("ball", shapes::icosphere(3), 12, false);
+  const BatchMesh ball(base.refinable());  // of 642
+  EXPECT_TRUE(ball.is_sparse(20));
+  EXPECT_FALSE(ball.is_sparse(21));
+}
+
+std::vector<std::uint32_t> values(std::span<const VertexId> vertices) {
+  std::vector<std::uint32_t> values;
+  for (const VertexId v : vertices) values.push_back(v.value);
+  return values;
+}
+
+// An ear on the border at a vertex.
+void split_at(VertexId v, BatchMesh& state, RefinableMesh& mesh) {
+  apply_one({mesh.connectivity().outgoing(v), 0, SplitKind::border_first}, state, mesh);
+}
+
+RefinableMesh triangle() {
+  return *RefinableMesh::from_base({{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}, {{0, 1, 2}}});
+}
+
+TEST(BatchMesh, SweepsOverABaseById) {
+  const RefinableMesh mesh = grid();
+  BatchMesh state(mesh);
+  std::vector<std::uint32_t> ids(mesh.vertex_count());
+  std::iota(ids.begin(), ids.end(), 0u);
+  EXPECT_EQ(values(state.sweep()), ids);
+}
+
+TEST(BatchMesh, SweepsOverASplitVertexRightAfterItsKeptOneWhateverTheSplit) {
+  const RefinableMesh before = grid();
+  for (const SplitSite& site : every_site(before.connectivity())) {
+    RefinableMesh mesh = before;
+    BatchMesh state(mesh);
+    std::vector<std::uint32_t> expected = values(state.sweep());
+    const VertexId kept = kept_vertex(mesh.connectivity(), site);
+    expected.insert(expected.begin() + kept.value + 1, before.vertex_count());
+    apply_one(site, state, mesh);
+    EXPECT_EQ(values(state.sweep()), expected);
+  }
+}
+
+TEST(BatchMesh, AFamilyIsSweptByIdWhicheverOfItWasSplit) {
+  RefinableMesh mesh = triangle();
+  BatchMesh state(mesh);
+  for (const std::uint32_t kept : {1u, 0u, 3u, 1u, 4u}) split_at(VertexId(kept), state, mesh);
+  // 3, 5 and 6 are of 1's family, 4 and 7 of 0's.
+  EXPECT_EQ(values(state.sweep()), (std::vector<std::uint32_t>{0, 4, 7, 1, 3, 5, 6, 2}));
+}
+
+TEST(BatchMesh, VerticesThatArriveFoundFamiliesAfterAllOthers) {
+  RefinableMesh mesh = triangle();
+  BatchMesh state(mesh);
+  split_at(VertexId(0), state, mesh);
+  ASSERT_TRUE(mesh.append(triangle().snapshot()).ok());  // 4, 5 and 6
+  state.grow(mesh);
+  EXPECT_EQ(values(state.sweep()), (std::vector<std::uint32_t>{0, 3, 1, 2, 4, 5, 6}));
+  split_at(VertexId(4), state, mesh);
+  split_at(VertexId(3), state, mesh);
+  EXPECT_EQ(values(state.sweep()), (std::vector<std::uint32_t>{0, 3, 8, 1, 2, 4, 7, 5, 6}));
+}
+
+TEST(BatchMesh, TheRestOfTheSweepBeginsAfterTheKeptVertexOfTheLastSplit) {
+  RefinableMesh mesh = grid();
+  BatchMesh state(mesh);
+  EXPECT_FALSE(state.has_batch());
+  std::vector<BatchSplit> batch;
+  for (const std::uint32_t corner : {1u, 3u}) {  // the latter is applied first
+    const SplitSite ear{mesh.connectivity().outgoing(VertexId(corner)), 0, SplitKind::border_first};
+    batch.push_back({{ear, {}}, VertexId(corner), 100 * static_cast<int>(corner)});
+  }
+  ASSERT_TRUE(state.apply(batch, mesh).ok());
+  EXPECT_TRUE(state.has_batch());
+  // 25 is of 3's family, 26 of 1's.
+  std::vector<std::uint32_t> rest = {25, 4};
+  for (std::uint32_t v = 5; v < 25; ++v) rest.push_back(v);
+  EXPECT_EQ(values(state.rest_of_sweep()), rest);
+  split_at(VertexId(24), state, mesh);
+  EXPECT_EQ(values(state.rest_of_sweep()), (std::vector<std::uint32_t>{27}));
 }
 
 }  // namespace

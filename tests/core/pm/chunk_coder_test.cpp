@@ -67,10 +67,32 @@ TEST(ChunkCoder, GivesBackDecisionsAndRawBitsInAnyMixture) {
   }
 }
 
-TEST(ChunkCoder, TellsTheChunksLengthAhead) {
-  for (std::uint32_t seed = 0; seed < 50; ++seed) {
-    const ChunkWriter writer = write(random_symbols(seed, 10 * seed, true, true));
-    EXPECT_EQ(ChunkWriter(writer).finish().size(), writer.byte_count());
+TEST(ChunkCoder, GivesBackDecisionsBesideRawBitsOfEveryLength) {
+  for (std::uint32_t seed = 0; seed < 400; ++seed) {
+    const auto decisions = random_symbols(seed, seed / 100 * 15, true, false);
+    for (int bits = 0; bits <= 96; ++bits) {
+      std::vector<Symbol> raw_bits;
+      std::mt19937 random(seed);
+      for (int done = 0; done < bits; ++done) {  // zeros, ones or any
+        const bool one = seed % 3 == 2 ? random() % 2 == 0 : seed % 3 == 1;
+        raw_bits.push_back({0, 1, one});
+      }
+      for (const bool raw_first : {false, true}) {
+        std::vector<Symbol> symbols = raw_first ? raw_bits : decisions;
+        const std::vector<Symbol>& others = raw_first ? decisions : raw_bits;
+        symbols.insert(symbols.end(), others.begin(), others.end());
+        expect_read(write(symbols).finish(), symbols);
+      }
+    }
+  }
+}
+
+TEST(ChunkCoder, TellsAheadHowLongTheChunkWillBeAtMost) {
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    const ChunkWriter writer = write(random_symbols(seed, seed, true, true));
+    const std::size_t bytes = ChunkWriter(writer).finish().size();
+    EXPECT_LE(bytes, writer.byte_count());
+    EXPECT_GE(bytes + 2, writer.byte_count());
   }
 }
 
@@ -128,25 +150,53 @@ TEST(ChunkCoder, ACarryRunsThroughManyUnits) {
   expect_read(bytes, symbols);
 }
 
-TEST(ChunkCoder, EveryCutOfOneStreamIsNoticed) {
-  for (const bool raw_bits : {false, true}) {
-    const auto symbols = random_symbols(7, 200, !raw_bits, raw_bits);
-    const Bytes whole = write(symbols).finish();
-    for (std::size_t n = 0; n < whole.size(); ++n) {
-      // The raw bits stand at the chunk's end, the decisions at its start.
-      const ByteView view(whole);
-      ChunkReader reader(raw_bits ? view.last(n) : view.first(n));
-      Models models;
-      for (const Symbol& symbol : symbols) code(reader, models, symbol);
-      EXPECT_TRUE(reader.failed()) << n;
-    }
+// Reads all symbols, whatever comes of them.
+ChunkReader read(ByteView bytes, const std::vector<Symbol>& symbols) {
+  ChunkReader reader(bytes);
+  Models models;
+  for (const Symbol& symbol : symbols) code(reader, models, symbol);
+  return reader;
+}
+
+bool is_whole(const ChunkReader& reader) { return !reader.failed() && reader.at_end(); }
+
+TEST(ChunkCoder, EveryCutOfTheRawBitsIsNoticed) {
+  const auto symbols = random_symbols(7, 200, false, true);
+  const Bytes whole = write(symbols).finish();
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    EXPECT_FALSE(is_whole(read(ByteView(whole).last(n), symbols))) << n;
   }
 }
 
-TEST(ChunkCoder, BytesThatAreNotThereReadAsZeros) {
+TEST(ChunkCoder, EveryCutOfTheDecisionsIsNoticedButForBytesThatAreLookedAheadAt) {
+  const auto symbols = random_symbols(7, 200, true, false);
+  const Bytes whole = write(symbols).finish();
+  for (std::size_t n = 0; n + 2 < whole.size(); ++n) {
+    EXPECT_FALSE(is_whole(read(ByteView(whole).first(n), symbols))) << n;
+  }
+}
+
+TEST(ChunkCoder, AChunkOfNothingLacksRawBitsAndAnEnd) {
   ChunkReader reader({});
-  EXPECT_TRUE(reader.failed());
+  EXPECT_FALSE(reader.at_end());
   EXPECT_EQ(reader.raw(32), 0u);
+  EXPECT_TRUE(reader.failed());
+}
+
+TEST(ChunkCoder, DecisionsLookNoFurtherAheadThanSixBytes) {
+  const Bytes one_byte(1);
+  ChunkReader reader(one_byte);
+  AdaptiveBit model;
+  EXPECT_TRUE(reader.at_end());
+  for (int n = 0; n < 200; ++n) reader.bit(model);
+  EXPECT_FALSE(reader.failed());  // ever likelier ones need no unit
+  EXPECT_TRUE(reader.at_end());
+  for (int n = 0; n < 40; ++n) {
+    AdaptiveBit even;
+    reader.bit(even);
+  }
+  EXPECT_TRUE(reader.failed());
+  EXPECT_FALSE(reader.at_end());
 }
 
 TEST(ChunkCoder, RefusesACodeThatIsNotBelowTheRange) {
@@ -164,6 +214,15 @@ TEST(ChunkCoder, AllowsZerosBetweenTheStreamsAndNothingElse) {
   Models models;
   for (const Symbol& symbol : symbols) code(reader, models, symbol);
   EXPECT_FALSE(reader.at_end());
+}
+
+TEST(ChunkCoder, RefusesBytesBetweenTheStreams) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    const auto symbols = random_symbols(seed, 1 + seed, true, false);
+    Bytes bytes = write(symbols).finish();
+    bytes.insert(bytes.end(), 6, 0x40);  // in place of those that a decoder looks ahead at
+    EXPECT_FALSE(is_whole(read(bytes, symbols))) << seed;
+  }
 }
 
 TEST(ChunkCoder, SeesThatSomethingIsLeftOver) {

@@ -1,5 +1,7 @@
 #include "core/pm/patch.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "core/pm/split_model.h"
@@ -61,6 +63,31 @@ TEST(Patch, ItsNormalStandsOnAFlatFan) {
   EXPECT_GT(patch.normal.z, 0);
   EXPECT_EQ(patch.flatness, 0);
   EXPECT_GT(gather(hexagon(100, {500, 500, 300}, 60), kTwoFaces).flatness, 0);
+}
+
+TEST(Patch, FansArePredictedByTheirSizeAndThoseOnBordersAlike) {
+  const auto fan_class = [](std::uint32_t half_edge, std::uint16_t moved, SplitKind kind) {
+    return gather(hexagon(100, {500, 500, 300}), {HalfEdgeId(half_edge), moved, kind}).fan_class();
+  };
+  constexpr std::array<std::size_t, 5> kInterior = {0, 0, 1, 2, 3};  // of one to five faces
+  for (std::uint16_t moved = 1; moved <= 5; ++moved) {
+    EXPECT_EQ(fan_class(0, moved, SplitKind::interior), kInterior[moved - 1u]);
+  }
+  for (std::uint16_t moved = 0; moved <= 2; ++moved) {
+    EXPECT_EQ(fan_class(1, moved, SplitKind::border_first), kBorderFans);
+    EXPECT_EQ(fan_class(1, moved, SplitKind::border_last), kBorderFans);
+  }
+}
+
+TEST(Patch, EachClassOfFansHasWeightsOfItsOwn) {
+  const Patch patch = gather(hexagon(100, {500, 500, 300}), kTwoFaces);
+  const Predictor before = initial_parameters().predictor;
+  for (std::size_t changed = 0; changed < kFanClasses; ++changed) {
+    Predictor predictor = before;
+    predictor.fans[changed] = {{32, 0, 0, 0}, {0, 32}};
+    EXPECT_EQ(predict(patch, predictor).at != predict(patch, before).at,
+              changed == patch.fan_class());
+  }
 }
 
 // Every kind of split of every vertex.
@@ -133,8 +160,10 @@ std::vector<Predictor> extreme_predictors() {
   for (const std::int64_t most : {kMostWeight, -kMostWeight}) {
     const Predictor::Weights same{{most, most, most, most}, {most, most}};
     const Predictor::Weights against{{most, -most, most, -most}, {-most, most}};
-    predictors.push_back({same, same, same, {most, most}});
-    predictors.push_back({against, against, against, {-most, most}});
+    predictors.push_back({{}, {most, most}});
+    predictors.back().fans.fill(same);
+    predictors.push_back({{}, {-most, most}});
+    predictors.back().fans.fill(against);
   }
   return predictors;
 }

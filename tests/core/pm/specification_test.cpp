@@ -22,15 +22,14 @@ LatticeMesh decode(ByteView chunk, bool has_relocations) {
 }
 
 TEST(Specification, TheExampleAddsAnEar) {
-  const Bytes chunk = {0xE0, 0x7C, 0x1F, 0x37, 0x2A, 0xB6, 0x00, 0x00, 0x02, 0x2B, 0x80};
+  const Bytes chunk = {0xF1, 0xF2, 0xE6, 0x02, 0x2B, 0x80};
   const LatticeMesh mesh = decode(chunk, false);
   EXPECT_EQ(mesh.triangles.back(), (Triangle{4, 1, 0}));
   EXPECT_EQ(mesh.positions.back(), (Vec3i{60, 20, 10}));
 }
 
 TEST(Specification, TheExampleWithRelocationsMovesTheKeptVertex) {
-  const Bytes chunk = {0xE1, 0x33, 0xBD, 0x90, 0x42, 0x63, 0x80,
-                       0x00, 0x00, 0x00, 0x76, 0x2B, 0x80};
+  const Bytes chunk = {0xF2, 0x28, 0x53, 0xCF, 0xC4, 0x76, 0x2B, 0x80};
   const LatticeMesh mesh = decode(chunk, true);
   EXPECT_EQ(mesh.triangles.back(), (Triangle{4, 1, 0}));
   EXPECT_EQ(mesh.positions.front(), (Vec3i{0, 102, 0}));

@@ -1,6 +1,9 @@
 // Chunks of all kinds of splits, coded and decoded.
 #include "core/pm/split_coder.h"
 
+#include <array>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "core/pm/chunk_reader.h"
@@ -44,7 +47,7 @@ TEST(SplitCoder, GivesBackRandomSplitsOfEveryKindOfMesh) {
 
 TEST(SplitCoder, GivesBackBatchesJustAroundTheSparseOnes) {
   const SplitBase base = make_split_base("ball", shapes::icosphere(3), 12, false);
-  const std::uint32_t sparse = base.refinable().vertex_count() / kSparseBatch;
+  const std::uint32_t sparse = base.refinable().vertex_count() / 32;
   for (std::uint32_t count = sparse - 1; count <= sparse + 2; ++count) {
     RandomChunks chunks(base, count);
     std::vector<VertexId> wanted;
@@ -68,6 +71,53 @@ TEST(SplitCoder, GivesBackTheFirstAndTheLastVertex) {
   expect_decoded(base, file, chunks.mesh());
 }
 
+// A batch of every seventh vertex, up to the middle one.
+void add_first_half(RandomChunks& chunks) {
+  std::vector<VertexId> wanted;
+  for (std::uint32_t v = 0; v < chunks.mesh().vertex_count() / 2; v += 7) wanted.emplace_back(v);
+  chunks.add_batch(wanted);
+}
+
+std::vector<VertexId> rest_of_sweep(RandomChunks& chunks) {
+  const auto rest = chunks.state().rest_of_sweep();
+  return {rest.begin(), rest.end()};
+}
+
+TEST(SplitCoder, GivesBackABatchThatContinuesInTheSameChunkAndInTheNext) {
+  const SplitBase base = make_split_base("ball", shapes::icosphere(3), 12, false);
+  for (const bool other_chunk : {false, true}) {
+    RandomChunks chunks(base, 1);
+    std::vector<RandomChunks::Chunk> file;
+    add_first_half(chunks);
+    if (other_chunk) file.push_back(chunks.finish_chunk());
+    const std::uint32_t before = chunks.mesh().vertex_count();
+    chunks.add_batch(rest_of_sweep(chunks), true);
+    EXPECT_GT(32 * (chunks.mesh().vertex_count() - before), before);  // dense
+    file.push_back(chunks.finish_chunk());
+    expect_decoded(base, file, chunks.mesh());
+  }
+}
+
+TEST(SplitCoder, GivesBackABatchThatContinuesASparseOneOrWhatHasArrivedSince) {
+  const SplitBase base = make_split_base("grid", shapes::grid(20, 20), 12, false);
+  RandomChunks chunks(base, 1);
+  chunks.add_batch(std::vector{VertexId(17), VertexId(200)});
+  std::vector file = {chunks.finish_chunk()};
+  const std::uint32_t before = chunks.mesh().vertex_count();
+  const LatticeMesh more = make_split_base("more", shapes::grid(9, 9), 12, false).mesh;
+  chunks.arrive(more);
+  chunks.add_batch(rest_of_sweep(chunks), true);
+  file.push_back(chunks.finish_chunk());
+
+  RefinableMesh mesh = base.refinable();
+  SplitDecoder decoder(mesh);
+  ASSERT_TRUE(decoder.decode(file[0].bytes, file[0].splits, base.header, mesh).ok());
+  ASSERT_EQ(mesh.vertex_count(), before);
+  ASSERT_TRUE(mesh.append(more).ok());
+  ASSERT_TRUE(decoder.decode(file[1].bytes, file[1].splits, base.header, mesh).ok());
+  expect_same(mesh, chunks.mesh(), base.name);
+}
+
 // Many batches of one split at a vertex of very many faces: each must be of bounded cost.
 TEST(SplitCoder, SplitsAHubOfAHundredThousandFacesOneByOne) {
   for (const bool border : {false, true}) {
@@ -79,6 +129,19 @@ TEST(SplitCoder, SplitsAHubOfAHundredThousandFacesOneByOne) {
     EXPECT_GT(file[0].splits, 1'000u);
     expect_decoded(base, file, chunks.mesh());
   }
+}
+
+TEST(SplitCoder, ABatchThatContinuesHasNoMarksBeforeItsPart) {
+  const SplitBase base = make_split_base("ball", shapes::icosphere(4), 12, false);
+  std::array<std::size_t, 2> bytes;
+  for (const bool continues : {false, true}) {
+    RandomChunks chunks(base, 1);
+    add_first_half(chunks);
+    chunks.finish_chunk();
+    chunks.add_batch(rest_of_sweep(chunks), continues);
+    bytes[continues] = chunks.finish_chunk().bytes.size();
+  }
+  EXPECT_LT(bytes[1], bytes[0]);
 }
 
 RandomChunks::Chunk grid_chunk(const SplitBase& base) {
@@ -118,6 +181,41 @@ TEST(SplitDecoder, RefusesBytesThatAreLeftOver) {
   auto [bytes, splits] = grid_chunk(base);
   bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), 50, 0x55);
   EXPECT_NE(error_of(base, bytes, splits), "none");
+}
+
+// One split's count, no change of weights, and that the batch continues.
+Bytes chunk_that_continues() {
+  ChunkWriter writer;
+  SplitModel model;
+  writer.raw(5, 0);
+  constexpr std::size_t kWeights = kFanClasses * 6 + 3;
+  for (std::size_t i = 0; i < kWeights; ++i) writer.bit(model.weight_length[0], false);
+  writer.bit(model.continues, true);
+  return std::move(writer).finish(40);
+}
+
+TEST(SplitDecoder, RefusesABatchThatContinuesNone) {
+  const SplitBase base = make_split_base("grid", shapes::grid(2, 2), 12, false);
+  EXPECT_EQ(error_of(base, chunk_that_continues(), 1),
+            "batch after split 0: a batch continues none");
+}
+
+TEST(SplitDecoder, RefusesABatchThatContinuesTheLastVertexOfTheSweep) {
+  const SplitBase base = make_split_base("triangle", shapes::isolated_triangles(1), 8, false);
+  RefinableMesh mesh = base.refinable();
+  BatchMesh state(mesh);
+  SplitModel model;
+  ChunkWriter writer;
+  // The rest of the sweep is the added vertex alone.
+  const SplitSite ear{mesh.connectivity().outgoing(VertexId(2)), 0, SplitKind::border_first};
+  std::vector<BatchSplit> batch = {{{ear, {}}, VertexId(2)}};
+  SplitCoder<ChunkWriter> coder(writer, base.header, model, mesh, state);
+  ASSERT_TRUE(coder.code(batch, 1, model.parameters).ok());
+  ASSERT_TRUE(state.apply(batch, mesh).ok());
+  batch[0] = {{{mesh.connectivity().outgoing(VertexId(0)), 0, SplitKind::border_first}, {}},
+              VertexId(0)};
+  EXPECT_FALSE(coder.code(batch, 1, model.parameters, true).ok());
+  EXPECT_NE(error_of(base, std::move(writer).finish(), 2), "none");
 }
 
 TEST(SplitDecoder, RefusesAnEmptyChunk) {
