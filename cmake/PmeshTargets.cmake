@@ -24,9 +24,6 @@ if(PMESH_SANITIZE)
   target_compile_options(pmesh_settings INTERFACE
     $<BUILD_INTERFACE:-fsanitize=${PMESH_SANITIZE};-fno-omit-frame-pointer;-fno-sanitize-recover=all>)
   target_link_options(pmesh_settings INTERFACE $<BUILD_INTERFACE:-fsanitize=${PMESH_SANITIZE}>)
-  # UBSan's check of calls through pointers makes clang 14 fail on coroutines.
-  target_compile_options(pmesh_settings INTERFACE
-    $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=function>>)
 endif()
 if(PMESH_BUILD_FUZZ)
   target_compile_options(pmesh_settings INTERFACE $<BUILD_INTERFACE:-fsanitize=fuzzer-no-link>)

@@ -56,8 +56,8 @@ class BatchMesh {
   /// Covers the faces of a split. Precondition: they are free.
   void cover(const RefinableMesh& mesh, const SplitSite& site);
 
-  /// Applies a batch to `mesh`, dearest splits first, those of equal cost in their order, and
-  /// uncovers all faces. Fails if a split is not possible.
+  /// Applies a batch of at least one split to `mesh`, dearest splits first, those of equal cost in
+  /// their order, and uncovers all faces. Fails if a split is not possible.
   Status apply(std::span<const BatchSplit> batch, RefinableMesh& mesh);
   /// The order in which apply() took the last batch.
   std::span<const std::uint32_t> order() const { return order_; }

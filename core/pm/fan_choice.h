@@ -20,7 +20,6 @@ inline constexpr std::uint32_t kMaxRankedFaces = 64;
 /// Weights of the ranking, in sixteenths, sent with each batch.
 struct FanWeights {
   std::array<std::int64_t, 3> of;  ///< Inner spokes' length, cut spokes' length, centre's distance.
-  friend bool operator==(const FanWeights&, const FanWeights&) = default;
 };
 
 /// The faces around a vertex, ccw: of an interior vertex from its face with the smallest id, of a

@@ -28,13 +28,9 @@ struct Predictor {
   struct Weights {
     std::array<std::int64_t, 4> tangential;  ///< kept, cut, opposite, area.
     std::array<std::int64_t, 2> normal;      ///< kept, opposite.
-
-    friend bool operator==(const Weights&, const Weights&) = default;
   };
   std::array<Weights, kFanClasses> fans;  ///< By Patch::fan_class().
   std::array<std::int64_t, 2> mirrored;   ///< Of a relocated kept vertex: tangential, normal.
-
-  friend bool operator==(const Predictor&, const Predictor&) = default;
 };
 
 struct Patch {

@@ -17,7 +17,6 @@ namespace pmesh {
 struct BatchParameters {
   Predictor predictor;
   FanWeights fan;
-  friend bool operator==(const BatchParameters&, const BatchParameters&) = default;
 };
 
 /// Before a file's first batch.
