@@ -74,18 +74,19 @@ void BatchBuilder::add(std::span<const std::uint32_t> splits) {
   std::inplace_merge(to_come_.begin(), to_come_.begin() + added, to_come_.end());
 }
 
-std::vector<BatchSplit> BatchBuilder::next(std::size_t most, const RefinableMesh& mesh,
-                                           BatchMesh& state) {
+std::vector<BatchSplit> BatchBuilder::next(const RefinableMesh& mesh, BatchMesh& state) {
   Batch batch;
+  Fan fan;
   ++batch_number_;
-  while (!to_come_.empty() && batch.size() < most) {
+  while (!to_come_.empty()) {
     const std::optional<BatchSplit> entry = split_at(to_come_.back(), mesh);
     if (!entry) break;
-    const SplitSite& site = entry->split.site;
     std::uint32_t& kept_in = kept_in_[entry->kept.value];
-    if (kept_in == batch_number_ || !covers_free_faces(site, mesh, state)) break;
+    if (kept_in == batch_number_) break;
+    fan.walk(mesh.connectivity(), entry->split.site);
+    if (!state.is_free(fan)) break;
     kept_in = batch_number_;
-    state.cover(mesh, site);
+    state.cover(mesh, fan);
     batch.emplace_back(*entry, to_come_.back());
     to_come_.pop_back();
   }
@@ -102,27 +103,22 @@ std::vector<BatchSplit> BatchBuilder::next(std::size_t most, const RefinableMesh
 }
 
 void BatchBuilder::sort(Batch& batch, BatchMesh& state) {
-  const bool sparse = state.is_sparse(batch.size());
-  if (!sparse) {
-    place_.resize(state.sweep().size());
+  const bool by_id = state.order_of(batch.size()) == BatchOrder::ids;
+  if (!by_id) {
+    place_.resize(state.vertices_to_sweep().size());
     std::uint32_t place = 0;
-    for (const VertexId v : state.sweep()) place_[v.value] = place++;
+    for (const VertexId v : state.vertices_to_sweep()) place_[v.value] = place++;
   }
-  const auto place = [&](VertexId v) { return sparse ? v.value : place_[v.value]; };
+  const auto place = [&](VertexId v) { return by_id ? v.value : place_[v.value]; };
   std::sort(batch.begin(), batch.end(), [&](const auto& a, const auto& b) {
     return place(a.first.kept) < place(b.first.kept);
   });
 }
 
-void BatchBuilder::take_back(std::size_t kept) {
-  std::sort(batch_.begin() + static_cast<std::ptrdiff_t>(kept), batch_.end());
-  add(std::span(batch_).subspan(kept));
-  batch_.resize(kept);
-}
-
-void BatchBuilder::applied(std::span<const std::uint32_t> order, std::uint32_t first_vertex) {
+void BatchBuilder::applied(std::size_t begin, std::span<const std::uint32_t> order,
+                           std::uint32_t first_vertex) {
   for (std::uint32_t i = 0; i < order.size(); ++i) {
-    const VertexId removed = log_.collapses[batch_[order[i]]].removed;
+    const VertexId removed = log_.collapses[batch_[begin + order[i]]].removed;
     file_ids_[removed.value] = VertexId(first_vertex + i);
   }
 }
@@ -154,19 +150,6 @@ std::optional<BatchSplit> BatchBuilder::split_at(std::size_t index,
         lattice_.quantise(log_.kept_before[index]) - mesh.positions()[renamed.kept.value];
   }
   return entry;
-}
-
-bool BatchBuilder::covers_free_faces(const SplitSite& site, const RefinableMesh& mesh,
-                                     const BatchMesh& state) const {
-  const HalfEdgeMesh& connectivity = mesh.connectivity();
-  if (!state.is_free(HalfEdgeMesh::face(site.half_edge))) return false;
-  const bool clockwise = site.kind == SplitKind::border_last;
-  HalfEdgeId h = clockwise ? connectivity.next(site.half_edge) : site.half_edge;
-  for (std::uint32_t face = 1; face < site.moved_faces; ++face) {
-    h = clockwise ? connectivity.rotate_cw(h) : connectivity.rotate_ccw(h);
-    if (!state.is_free(HalfEdgeMesh::face(h))) return false;
-  }
-  return true;
 }
 
 }  // namespace pmesh

@@ -29,17 +29,14 @@ class BatchBuilder {
 
   std::size_t left() const { return to_come_.size(); }  ///< Splits to come.
 
-  /// The longest run of the next splits, `most` at most, that do not touch, in the order in
-  /// which they are coded, against `mesh`, which has all splits before. Leaves `state` uncovered.
-  /// Never empty while there are splits left. Precondition: most > 0.
-  std::vector<BatchSplit> next(std::size_t most, const RefinableMesh& mesh, BatchMesh& state);
+  /// The longest run of the next splits that do not touch, in the order in which they are coded,
+  /// against `mesh`, which has all splits before. Leaves `state` uncovered. Never empty while there
+  /// are splits left. (Applying some of them leaves the others as they are.)
+  std::vector<BatchSplit> next(const RefinableMesh& mesh, BatchMesh& state);
 
-  /// Takes all but the first `kept` splits of next()'s batch back.
-  void take_back(std::size_t kept);
-
-  /// Tells it that next()'s batch was applied in the order `order`: its new vertices' ids begin at
-  /// `first_vertex`.
-  void applied(std::span<const std::uint32_t> order, std::uint32_t first_vertex);
+  /// Tells it that those from `begin` on of next()'s batch were applied, in the order `order`:
+  /// their new vertices' ids begin at `first_vertex`.
+  void applied(std::size_t begin, std::span<const std::uint32_t> order, std::uint32_t first_vertex);
 
   /// Splits that next() would return, about, from the log's own batches. Precondition: left() > 0.
   std::size_t batch_size_ahead() const;
@@ -52,8 +49,6 @@ class BatchBuilder {
   VertexId file_id(VertexId original) const {
     return original.valid() ? file_ids_[original.value] : original;
   }
-  bool covers_free_faces(const SplitSite& site, const RefinableMesh& mesh,
-                         const BatchMesh& state) const;
 
   const CollapseLog& log_;
   std::span<const Vec3i> positions_;

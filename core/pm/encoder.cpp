@@ -19,9 +19,11 @@
 namespace pmesh {
 namespace {
 
-// A chunk has half the bytes before it, so that LODs lie close, but at most a tenth of all, so that
-// little is left to decode when the last byte has come.
+// The first chunks have half the bytes before them, so that the coarsest LODs lie close, the others
+// as many as there are before them, but at most a tenth of all, so that little is left to decode
+// when the last byte has come.
 constexpr std::size_t kFirstChunkBytes = 800;
+constexpr std::size_t kFirstChunksEnd = 4096;
 constexpr std::size_t kLeastLargestChunkBytes = 8 * 1024;
 constexpr std::size_t kLargestChunkBytes = 256 * 1024;
 constexpr std::size_t kBitsOfSplit = 17;  // what a split takes, about
@@ -83,9 +85,11 @@ class BodyWriter {
                      Bytes& body) {
     const std::size_t tenth = header_.vertices * kBitsOfSplit / 8 / 10;
     largest = std::min(largest, std::max(tenth, kLeastLargestChunkBytes));
-    while (builder_.left() > 0 || arrived_ < components_.count()) {
+    while (splits_left() || arrived_ < components_.count()) {
       if (rows.size() == most_rows) return false;
-      const std::size_t target = std::clamp(body.size() / 2, kFirstChunkBytes, largest);
+      const std::size_t before = body.size();
+      const std::size_t target =
+          std::clamp(before < kFirstChunksEnd ? before / 2 : before, kFirstChunkBytes, largest);
       ChunkRow row;
       Bytes bytes;
       if (arrived_ < components_.count()) {
@@ -102,6 +106,8 @@ class BodyWriter {
   std::span<const Vec3i> positions() const { return mesh_.positions(); }
 
  private:
+  bool splits_left() const { return parts_left_ > 0 || builder_.left() > 0; }
+
   void place(std::span<const VertexId> originals, const EncodedBase& coded,
              std::uint32_t first_vertex) {
     for (std::size_t v = 0; v < originals.size(); ++v) {
@@ -134,55 +140,56 @@ class BodyWriter {
 
   // Batches that fill the chunk up to about `target` bytes.
   void put_splits(std::size_t target, Bytes& bytes) {
-    if (builder_.left() == 0) return;
+    if (!splits_left()) return;
     ChunkWriter chunk;
     const std::uint32_t before = mesh_.vertex_count();
     do {
-      put_batch(chunk, target * 8 / kBitsOfSplit);
-    } while (builder_.left() > 0 && !is_full(bytes.size() + chunk.byte_count(), before, target));
+      put_part(chunk, target * 8 / kBitsOfSplit);
+    } while (splits_left() && !is_full(bytes.size() + chunk.byte_count(), before, target));
     const std::uint32_t splits = mesh_.vertex_count() - before;
     const Bytes coded = std::move(chunk).finish(splits / 8 + 1);
     bytes.insert(bytes.end(), coded.begin(), coded.end());
   }
 
-  // Whether the next batch would overshoot the target more than its lack falls short of it. Never
-  // in the middle of a step.
+  // Whether the next part would overshoot the target more than its lack falls short of it. Never in
+  // the middle of a step.
   bool is_full(std::size_t bytes, std::uint32_t before, std::size_t target) const {
     if ((mesh_.vertex_count() - before) % step_ != 0) return false;
     const std::size_t ahead =
-        parts_left_ > 0 ? taken_back_ / parts_left_ : builder_.batch_size_ahead();
+        parts_left_ > 0 ? (batch_.size() - coded_) / parts_left_ : builder_.batch_size_ahead();
     return bytes + ahead * kBitsOfSplit / 8 / 2 > target;
   }
 
-  // The next batch, or if it has more than `most` splits one of its parts.
-  void put_batch(ChunkWriter& chunk, std::size_t most) {
-    const bool continues = parts_left_ > 0;
-    std::vector<BatchSplit> batch =
-        builder_.next(continues ? taken_back_ : builder_.left(), mesh_, state_);
-    if (!continues) parts_left_ = count_parts(batch.size(), most);
-    const std::size_t part = batch.size() / parts_left_--;
-    taken_back_ = batch.size() - part;
-    builder_.take_back(part);
-    batch.resize(part);
-    const BatchParameters parameters{fit_predictor(mesh_, batch, model_.parameters.predictor),
-                                     fit_fan_weights(mesh_, batch, model_.parameters.fan)};
+  // The next part of a batch: all of it, if it has no more than `most` splits.
+  void put_part(ChunkWriter& chunk, std::size_t most) {
+    BatchOrder order = BatchOrder::rest_of_sweep;
+    if (parts_left_ == 0) {
+      batch_ = builder_.next(mesh_, state_);
+      parts_left_ = count_parts(batch_.size(), most);
+      coded_ = 0;
+      order = state_.order_of(batch_.size());
+      parameters_ = {fit_predictor(mesh_, batch_, model_.parameters.predictor),
+                     fit_fan_weights(mesh_, batch_, model_.parameters.fan)};
+    }
+    const auto begin = batch_.begin() + static_cast<std::ptrdiff_t>(coded_);
+    const std::size_t size = (batch_.size() - coded_) / parts_left_--;
+    std::vector<BatchSplit> part(begin, begin + static_cast<std::ptrdiff_t>(size));
     SplitCoder<ChunkWriter> coder(chunk, header_, model_, mesh_, state_);
     [[maybe_unused]] Status done =
-        coder.code(batch, static_cast<std::uint32_t>(batch.size()), parameters, continues);
+        coder.code(part, static_cast<std::uint32_t>(size), order, parameters_);
     assert(done.ok());
     const std::uint32_t first_vertex = mesh_.vertex_count();
-    done = state_.apply(batch, mesh_);
+    done = state_.apply(part, mesh_);
     assert(done.ok());
-    builder_.applied(state_.order(), first_vertex);
+    builder_.applied(coded_, state_.order(), first_vertex);
+    coded_ += size;
   }
 
-  // Parts come in the order of the sweep, so each must be dense enough to be coded by it, and no
-  // splits of new components may join them.
+  // Parts come in the order of the sweep, and no splits of new components may join them.
   std::size_t count_parts(std::size_t splits, std::size_t most) const {
     if (step_ > 1 || arrived_ < components_.count()) return 1;
-    std::size_t parts = (splits + most - 1) / most;
-    while (parts > 1 && state_.is_sparse(splits / parts / 2)) --parts;
-    return parts;
+    if (state_.order_of(splits) == BatchOrder::ids) return 1;
+    return (splits + most - 1) / most;
   }
 
   void finish(const Bytes& bytes, ChunkRow& row, Bytes& body) const {
@@ -203,7 +210,9 @@ class BodyWriter {
   RefinableMesh mesh_;
   BatchMesh state_;
   BatchBuilder builder_;
-  std::size_t parts_left_ = 0, taken_back_ = 0;  // of the batch that was begun
+  std::vector<BatchSplit> batch_;  // that was begun
+  BatchParameters parameters_;
+  std::size_t coded_ = 0, parts_left_ = 0;
 };
 
 FileHeader describe(const EncodeInput& input, const Components& components, const Base& chosen) {

@@ -1,6 +1,7 @@
 #include "core/pm/fan_choice.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace pmesh {
 namespace {
@@ -10,105 +11,140 @@ constexpr int kSpokeBits = 14;
 
 }  // namespace
 
-bool VertexRing::gather(const RefinableMesh& mesh, VertexId v) {
+bool VertexRing::gather(const RefinableMesh& mesh, VertexId v,
+                        const std::vector<std::uint8_t>& covered) {
   const HalfEdgeMesh& connectivity = mesh.connectivity();
-  centre_ = v;
-  faces_ = 0;
+  const Vec3i* const positions = mesh.positions().data();
+  const Int4 centre = int4(positions[v.value]);
   const HalfEdgeId first = connectivity.outgoing(v);
-  border_ = connectivity.is_border(first);
-  HalfEdgeId h = first;
+  HalfEdgeId h = first, last = first;
+  std::uint32_t faces = 0, start = 0, smallest = first.value;
+  std::uint64_t free = 0;
+  Int4 reach{};
   do {
-    if (faces_ == kMost) return false;
-    half_edges_[faces_++] = h;
-    mesh.prefetch(connectivity.target(h));  // for the ranking
-    const HalfEdgeId across = connectivity.twin(HalfEdgeMesh::next(h));
+    if (faces == kMost) return false;
+    const HalfEdgeId next = HalfEdgeMesh::next(h);
+    const HalfEdgeId across = connectivity.twin(next);
     if (across.valid()) connectivity.prefetch_corners(across);  // for the patch
+    half_edges_[faces] = h;
+    spokes_[faces] = int4(positions[connectivity.origin(next).value]) - centre;
+    reach |= magnitude(spokes_[faces]);
+    free |= std::uint64_t{covered[HalfEdgeMesh::face(h).value] ^ 1u} << faces;
+    const std::uint32_t is_smaller = 0 - static_cast<std::uint32_t>(h.value < smallest);
+    start ^= (start ^ faces) & is_smaller;  // no branch: nobody could guess it
+    smallest ^= (smallest ^ h.value) & is_smaller;
+    ++faces;
+    last = h;
     h = connectivity.rotate_ccw(h);
   } while (h.valid() && h != first);
-  if (!border_) {
-    const auto end = half_edges_.begin() + faces_;
-    std::rotate(half_edges_.begin(), std::min_element(half_edges_.begin(), end), end);
+  faces_ = faces;
+  free_ = free;
+  border_ = !h.valid();
+  start_ = border_ ? 0 : start;
+  if (border_) {
+    spokes_[faces] = int4(positions[connectivity.apex(last).value]) - centre;
+    reach |= magnitude(spokes_[faces]);
+  } else {
+    for (std::uint32_t i = 0; i < faces; ++i) half_edges_[faces + i] = half_edges_[i];
   }
+  reach_ = reach;
   return true;
 }
 
-std::uint32_t VertexRing::find_runs(const std::vector<std::uint8_t>& covered) {
+// A run of one face more begins where this one does, and the next face, too.
+std::uint32_t VertexRing::find_runs() {
   const std::uint32_t longest = border_ ? faces_ : faces_ - 1;
-  std::array<std::uint8_t, kMost> free;
-  for (std::uint32_t i = 0; i < faces_; ++i) free[i] = covered[face(i).value] == 0;
-  std::uint32_t run = 0, most = 0;
-  if (!border_) {  // a run may go over the ring's start
-    for (std::uint32_t i = faces_; i-- > 0;) run = free[i] != 0 ? run + 1 : 0;
+  const int over_the_end = static_cast<int>(faces_) - 1;
+  std::uint64_t runs = free_;
+  std::uint32_t length = 0;
+  while (runs != 0 && length < longest) {
+    runs_[++length] = runs;
+    runs &= runs >> 1 | (border_ ? 0 : (runs & 1) << over_the_end);
   }
-  for (std::uint32_t i = faces_; i-- > 0;) {
-    run = free[i] != 0 ? run + 1 : 0;
-    run_[i] = static_cast<std::uint8_t>(std::min(run, longest));
-    most = std::max<std::uint32_t>(most, run_[i]);
-  }
-  return most;
+  return length;
 }
 
-void VertexRing::measure_spokes(const RefinableMesh& mesh) {
-  const HalfEdgeMesh& connectivity = mesh.connectivity();
-  const std::span<const Vec3i> positions = mesh.positions();
-  const Vec3i centre = positions[centre_.value];
+void VertexRing::measure_spokes() {
   const std::uint32_t spokes = border_ ? faces_ + 1 : faces_;
-  std::array<Spoke, kMost + 1> spoke;
-  Spoke reach{};
-  for (std::uint32_t i = 0; i < spokes; ++i) {
-    const VertexId end =
-        i < faces_ ? connectivity.target(half_edges_[i]) : connectivity.apex(half_edges_[i - 1]);
-    const Vec3i p = positions[end.value] - centre;
-    spoke[i] = Spoke{p.x, p.y, p.z, 0};
-    reach |= spoke[i] < 0 ? -spoke[i] : spoke[i];
-  }
-  const int shift = std::max(0, bit_length(reach[0] | reach[1] | reach[2]) - kSpokeBits);
-  for (std::uint32_t i = 0; i < spokes; ++i) {
-    Spoke& s = spoke[i];
-    s = (s >> shift) * 8;
-    s[3] = static_cast<std::int32_t>(square_root(
-        std::int64_t{s[0]} * s[0] + std::int64_t{s[1]} * s[1] + std::int64_t{s[2]} * s[2]));
-  }
-  Spoke sum{};
+  const int shift = std::max(0, bit_length(reach_[0] | reach_[1] | reach_[2]) - kSpokeBits);
+  std::array<std::int32_t, kMost + 1> length;
+  Int4 sum{};
+  std::int32_t length_sum = 0;
   sums_[0] = sum;
-  for (std::uint32_t i = 0; i < spokes; ++i) sums_[i + 1] = sum += spoke[i];
-  mean_length_ = std::max(1, sum[3] / static_cast<std::int32_t>(spokes));
+  length_sums_[0] = 0;
+  for (std::uint32_t i = 0; i < spokes; ++i) {
+    Int4& spoke = spokes_[i];
+    spoke = (spoke >> shift) * 8;
+    sums_[i + 1] = sum += spoke;
+    const Vec3l s = widen(spoke);
+    length[i] = static_cast<std::int32_t>(square_root(dot(s, s)));
+    length_sums_[i + 1] = length_sum += length[i];
+  }
+  mean_length_ = std::max(1, length_sum / static_cast<std::int32_t>(spokes));
   if (border_) return;
-  for (std::uint32_t i = 0; i < spokes; ++i) sums_[spokes + i + 1] = sum += spoke[i];
+  for (std::uint32_t i = 0; i < spokes; ++i) {
+    sums_[spokes + i + 1] = sum += spokes_[i];
+    length_sums_[spokes + i + 1] = length_sum += length[i];
+  }
 }
 
 // All lengths are sums over the run, so that no candidate costs a division: the mean inner spoke is
 // inner / (length - 1), the mean cut spoke cut / 2, and the centre of polygon and vertex lies
 // distance / (length + 2) away. The common denominator is score_unit_.
-std::array<std::int64_t, 3> VertexRing::terms(std::uint32_t first, std::uint32_t length) const {
-  const std::uint32_t last = first + length;
-  const std::int64_t inner = length == 1 ? mean_length_ : (sums_[last] - sums_[first + 1])[3];
-  const Spoke all_spokes = sums_[last + 1] - sums_[first];
-  const std::int64_t cut = length == 1 ? all_spokes[3] : all_spokes[3] - inner;
-  const Vec3l sum{all_spokes[0], all_spokes[1], all_spokes[2]};
-  const std::int64_t distance = square_root(dot(sum, sum));
-  const std::int64_t inners = std::max<std::int64_t>(1, length - 1), all = length + 2;
-  return {2 * inner * all, cut * inners * all, 2 * distance * inners};
+VertexRing::Sums VertexRing::sums(std::uint32_t at) const {
+  const std::uint32_t last = at + length_;
+  const std::int64_t all = length_sums_[last + 1] - length_sums_[at];
+  const std::int64_t between = length_sums_[last] - length_sums_[at + 1];
+  const Int4 sum = sums_[last + 1] - sums_[at];
+  const Vec3l centre = widen(sum);
+  return {length_ == 1 ? mean_length_ : between, all - between, square_root(dot(centre, centre))};
 }
 
-std::span<const VertexRing::Candidate> VertexRing::rank(const RefinableMesh& mesh,
-                                                        std::uint32_t length,
-                                                        const FanWeights& weights) {
-  measure_spokes(mesh);
-  score_unit_ = 2 * std::max<std::int64_t>(1, length - 1) * (length + 2) * mean_length_;
-  std::uint32_t count = 0;
-  for (std::uint32_t first = 0; first < faces_; ++first) {
-    if (run_[first] < length) continue;
-    const std::array<std::int64_t, 3> of = terms(first, length);
-    const Candidate candidate{weights.of[0] * of[0] + weights.of[1] * of[1] + weights.of[2] * of[2],
-                              first};
-    std::uint32_t at = count++;
-    for (; at > 0 && candidates_[at - 1].score < candidate.score; --at) {
-      candidates_[at] = candidates_[at - 1];
-    }
-    candidates_[at] = candidate;
+std::array<std::int64_t, 3> VertexRing::units() const {
+  const std::int64_t inners = std::max<std::int64_t>(1, length_ - 1), all = length_ + 2;
+  return {2 * all, inners * all, 2 * inners};
+}
+
+std::array<std::int64_t, 3> VertexRing::terms(std::uint32_t first) const {
+  const Sums of = sums(walked(first));
+  const std::array<std::int64_t, 3> unit = units();
+  return {unit[0] * of.inner, unit[1] * of.cut, unit[2] * of.distance};
+}
+
+void VertexRing::score(std::uint32_t length, const FanWeights& weights) {
+  measure_spokes();
+  length_ = length;
+  const std::array<std::int64_t, 3> unit = units();
+  const std::int64_t inner = weights.of[0] * unit[0], cut = weights.of[1] * unit[1],
+                     distance = weights.of[2] * unit[2];
+  score_unit_ = unit[0] * std::max<std::int64_t>(1, length - 1) * mean_length_;
+  candidate_count_ = 0;
+  for (std::uint64_t left = runs_[length]; left != 0; left &= left - 1) {
+    const auto at = static_cast<std::uint32_t>(std::countr_zero(left));
+    const Sums of = sums(at);
+    const std::int64_t score = inner * of.inner + cut * of.cut + distance * of.distance;
+    const std::uint32_t first = at - start_ + (at < start_ ? faces_ : 0);
+    candidates_[candidate_count_++] = score * kMost + (kMost - 1 - first);
   }
-  return {candidates_.data(), count};
+}
+
+// No branch depends on which is likelier: nobody could guess it.
+std::array<VertexRing::Candidate, 3> VertexRing::likeliest(Candidate bound) const {
+  const auto swap_if_larger = [](Candidate& best, Candidate& candidate) {
+    const Candidate gain = candidate - best, won = gain & ~(gain >> 63);
+    best += won;
+    candidate -= won;
+  };
+  Candidate first = kNone, second = kNone, third = kNone;
+  for (std::uint32_t c = 0; c < candidate_count_; ++c) {
+    Candidate candidate = candidates_[c];
+    const Candidate too_likely = (bound - 1 - candidate) >> 63;
+    candidate += (kNone - candidate) & too_likely;
+    swap_if_larger(first, candidate);
+    swap_if_larger(second, candidate);
+    swap_if_larger(third, candidate);
+  }
+  return {first, second, third};
 }
 
 }  // namespace pmesh

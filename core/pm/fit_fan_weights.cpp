@@ -76,15 +76,15 @@ class Choices {
   std::vector<std::size_t> chosen_;  // by choice
 };
 
-void add_choice(const VertexRing& ring, std::span<const VertexRing::Candidate> candidates,
-                const SplitSite& site, Choices& choices) {
+void add_choice(const VertexRing& ring, const SplitSite& site, Choices& choices) {
   const double unit = 16 * static_cast<double>(ring.score_unit());
   choices.begin();
-  for (const VertexRing::Candidate& candidate : candidates) {
-    const std::array<std::int64_t, 3> of = ring.terms(candidate.first, site.moved_faces);
+  for (const VertexRing::Candidate candidate : ring.candidates()) {
+    const std::uint32_t first = VertexRing::first_face(candidate);
+    const std::array<std::int64_t, 3> of = ring.terms(first);
     choices.add({static_cast<double>(of[0]) / unit, static_cast<double>(of[1]) / unit,
                  static_cast<double>(of[2]) / unit},
-                ring.half_edge(candidate.first) == site.half_edge);
+                ring.half_edge(first) == site.half_edge);
   }
 }
 
@@ -94,9 +94,12 @@ Choices gather(const RefinableMesh& mesh, std::span<const BatchSplit> batch) {
   VertexRing ring;
   for (std::size_t s = 0; s < batch.size(); s += 1 + batch.size() / kMostSamples) {
     const SplitSite& site = batch[s].split.site;
-    if (site.kind != SplitKind::interior || !ring.gather(mesh, batch[s].kept)) continue;
-    if (ring.find_runs(nothing_covered) < site.moved_faces) continue;
-    add_choice(ring, ring.rank(mesh, site.moved_faces, {}), site, choices);
+    if (site.kind != SplitKind::interior || !ring.gather(mesh, batch[s].kept, nothing_covered)) {
+      continue;
+    }
+    if (ring.find_runs() < site.moved_faces) continue;
+    ring.score(site.moved_faces, {});
+    add_choice(ring, site, choices);
   }
   return choices;
 }

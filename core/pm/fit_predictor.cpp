@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostSamples = 8000;
 constexpr int kPasses = 6;
 constexpr double kUnit = 32;               // weights are in 1/32
-constexpr double kDrawn = 15;              // the weights before count as much as this many samples
+constexpr double kDrawn = 5;               // the weights before count as much as this many samples
 constexpr double kRounding = 0.25;         // residuals are not finer, in squared lattice steps
 constexpr double kFinestResidual = 0.003;  // nor than this share of what may be expected
 
@@ -141,10 +141,12 @@ Predictor fit_predictor(const RefinableMesh& mesh, std::span<const BatchSplit> b
                         const Predictor& before) {
   std::array<PartSearch<4, 2>, kFanClasses> fans;
   PartSearch<1, 1> mirrored;
+  Fan fan;
   Patch patch;
   for (std::size_t s = 0; s < batch.size(); s += 1 + batch.size() / kMostSamples) {
     const VertexSplit& split = batch[s].split;
-    patch.gather(mesh, split.site);
+    fan.walk(mesh.connectivity(), split.site);
+    patch.gather(mesh, fan);
     const Vec3d added = widen(patch.local(split.position));
     const std::array<Vec3d, 4> features = {widen(patch.features[0]), widen(patch.features[1]),
                                            widen(patch.features[2]), widen(patch.features[3])};

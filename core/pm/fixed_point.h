@@ -46,7 +46,10 @@ inline int half_octaves(std::int64_t value) {
 }
 
 /// |x| + |y| + |z|.
-inline std::int64_t manhattan(Vec3l a) { return std::abs(a.x) + std::abs(a.y) + std::abs(a.z); }
+template <class T>
+std::int64_t manhattan(Vec3<T> a) {
+  return std::int64_t{std::abs(a.x)} + std::abs(a.y) + std::abs(a.z);
+}
 
 /// The largest of |x|, |y| and |z|.
 inline std::int64_t largest(Vec3l a) {

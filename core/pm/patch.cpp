@@ -8,13 +8,15 @@ namespace {
 constexpr int kFractionBits = 3;  // local coordinates are in eighths
 constexpr int kWeightBits = 5;    // weights are in 1/32
 
-Vec3l widen(Vec3i a) { return {a.x, a.y, a.z}; }
-
-// At most 2^(kLocalBits - 1) off the polygon's own size, so products of two fit 32 bits.
-Vec3i scaled(Vec3l difference, int shift) {
-  const Vec3l local = shift_right(8 * difference, shift);
-  return {static_cast<std::int32_t>(local.x), static_cast<std::int32_t>(local.y),
-          static_cast<std::int32_t>(local.z)};
+// Rounded to the nearest integer, halves up. Preconditions: 0 < b < 2^10, and the coordinates are
+// below 2^16 b. (One unsigned division each: the quotient is shifted to where it is positive.)
+Vec3l divide_small(Int4 a, std::uint32_t b) {
+  constexpr std::uint32_t kShift = 1 << 17;
+  const auto one = [b](std::int32_t of) {
+    const std::uint32_t twice = 2 * static_cast<std::uint32_t>(of) + b;
+    return std::int64_t{(twice + 2 * b * kShift) / (2 * b)} - kShift;
+  };
+  return {one(a[0]), one(a[1]), one(a[2])};
 }
 
 Vec3l scale_to(const std::array<std::int64_t, 2>& weights, Vec3l kept, Vec3l opposite) {
@@ -44,125 +46,116 @@ std::size_t Patch::fan_class() const {
 }
 
 Vec3l Patch::local(Vec3i point) const {
-  return clamp_to(shift_right(8 * (widen(point) - widen(kept)), shift), kLocalReach);
+  const Vec3l offset = widen(int4(point)) - widen(int4(kept));
+  return clamp_to(shift_right(8 * offset, shift), kLocalReach);
 }
 
-void Patch::gather(const RefinableMesh& mesh, const SplitSite& site) {
-  kind = site.kind;
-  faces = site.moved_faces;
+void Patch::gather(const RefinableMesh& mesh, const Fan& fan) {
+  kind = fan.kind();
+  faces = fan.faces();
+  kept = mesh.positions()[fan.kept().value];
   opposite_count_ = 0;
-  kept = mesh.positions()[kept_vertex(mesh.connectivity(), site).value];
   if (faces == 0) {
-    gather_ear(mesh, site);
+    gather_ear(mesh, fan.half_edges()[0]);
   } else {
-    gather_fan(mesh, site);
+    gather_fan(mesh, fan);
   }
-  measure();
+  measure_polygon();
+  measure_opposites();
+  measure_normal();
+  measure_area_centre();
+  measure_spread();
 }
 
-// Walks the fan and what lies across its outer edges. A border_last fan is walked clockwise.
-void Patch::gather_fan(const RefinableMesh& mesh, const SplitSite& site) {
+// The polygon, and what lies across the fan's outer edges, still on the lattice. A border_last fan
+// is walked clockwise.
+void Patch::gather_fan(const RefinableMesh& mesh, const Fan& fan) {
   const HalfEdgeMesh& connectivity = mesh.connectivity();
-  const std::span<const Vec3i> positions = mesh.positions();
+  const Vec3i* const positions = mesh.positions().data();
+  const Int4 origin = int4(kept);
+  const auto look_across = [&](HalfEdgeId outer, std::uint32_t edge) {
+    const HalfEdgeId across = connectivity.twin(outer);
+    if (!across.valid()) return;
+    outer_edges_[opposite_count_] = static_cast<std::uint16_t>(edge);
+    opposites_[opposite_count_++] = int4(positions[connectivity.apex(across).value]) - origin;
+  };
   const bool clockwise = kind == SplitKind::border_last;
-  HalfEdgeId h = clockwise ? connectivity.next(site.half_edge) : site.half_edge;
-  const VertexId first = clockwise ? connectivity.apex(h) : connectivity.target(h);
-  polygon[0] = positions[first.value];
-  if (kind == SplitKind::interior) add_opposite(mesh, h);
+  const std::span<const HalfEdgeId> half_edges = fan.half_edges();
+  const HalfEdgeId first = half_edges.front(), last = half_edges.back();
+  const VertexId begin = clockwise ? connectivity.apex(first) : connectivity.target(first);
+  outline_[1] = int4(positions[begin.value]) - origin;
+  if (kind == SplitKind::interior) look_across(first, 0);
   for (std::uint32_t face = 0; face < faces; ++face) {
-    const VertexId other = clockwise ? connectivity.target(h) : connectivity.apex(h);
-    polygon[face + 1] = positions[other.value];
-    add_opposite(mesh, connectivity.next(h));
-    if (face + 1 == faces) {
-      add_opposite(mesh, clockwise ? h : connectivity.prev(h));
-    } else {
-      h = clockwise ? connectivity.rotate_cw(h) : connectivity.rotate_ccw(h);
-    }
+    const HalfEdgeId h = half_edges[face];
+    const VertexId end = clockwise ? connectivity.target(h) : connectivity.apex(h);
+    outline_[face + 2] = int4(positions[end.value]) - origin;
+    look_across(HalfEdgeMesh::next(h), face + 1);
   }
+  look_across(clockwise ? last : HalfEdgeMesh::prev(last), faces + 1);
 }
 
 // An ear's patch is the face that it is glued to, seen from across the border half-edge.
-void Patch::gather_ear(const RefinableMesh& mesh, const SplitSite& site) {
+void Patch::gather_ear(const RefinableMesh& mesh, HalfEdgeId glued_to) {
   const HalfEdgeMesh& connectivity = mesh.connectivity();
   const std::span<const Vec3i> positions = mesh.positions();
-  const HalfEdgeId h = site.half_edge;
+  const Int4 origin = int4(kept);
   const bool leaves_kept = kind == SplitKind::border_first;
-  const VertexId other = leaves_kept ? connectivity.target(h) : connectivity.origin(h);
-  polygon[0] = positions[other.value];
-  const Vec3i apex = positions[connectivity.apex(h).value];
-  opposites_[opposite_count_++] = polygon[0] - (apex - kept);
-  crosses[0] = {};
+  const VertexId other =
+      leaves_kept ? connectivity.target(glued_to) : connectivity.origin(glued_to);
+  outline_[1] = int4(positions[other.value]) - origin;
+  outer_edges_[opposite_count_] = 0;
+  opposites_[opposite_count_++] = int4(positions[connectivity.apex(glued_to).value]) - origin;
 }
 
-// The fourth corner of the parallelogram over the face across `outer`, if there is one.
-void Patch::add_opposite(const RefinableMesh& mesh, HalfEdgeId outer) {
-  const HalfEdgeMesh& connectivity = mesh.connectivity();
-  const HalfEdgeId across = connectivity.twin(outer);
-  if (!across.valid()) return;
-  const std::span<const Vec3i> positions = mesh.positions();
-  const Vec3i a = positions[connectivity.origin(outer).value];
-  const Vec3i b = positions[connectivity.target(outer).value];
-  opposites_[opposite_count_++] = a + (b - positions[connectivity.apex(across).value]);
-}
-
-void Patch::measure() {
-  const std::uint32_t corners = faces + 1;
-  std::int64_t reach = 0;
-  for (std::uint32_t i = 0; i < corners; ++i) {
-    reach = std::max(reach, largest(widen(polygon[i]) - widen(kept)));
-  }
-  shift = std::max(0, bit_length(reach) + kFractionBits - kLocalBits);
-
-  Vec3l sum{}, opposite_sum{};
-  for (std::uint32_t i = 0; i < corners; ++i) {
-    polygon[i] = scaled(widen(polygon[i]) - widen(kept), shift);
-    sum += widen(polygon[i]);
-  }
-  for (std::uint32_t i = 0; i < opposite_count_; ++i) {
-    const Vec3l at = local(opposites_[i]);
-    opposites_[i] = {static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y),
-                     static_cast<std::int32_t>(at.z)};
-    opposite_sum += at;
-  }
-  centroid = divide(sum, corners + 1);
-  const Vec3l opposite_mean =
-      opposite_count_ == 0 ? centroid : divide(opposite_sum, opposite_count_);
-  measure_normal();
+void Patch::measure_polygon() {
+  const std::span<Int4> corners = std::span(outline_).subspan(1, faces + 1);
+  Int4 reach{};
+  for (const Int4& corner : corners) reach |= magnitude(corner);
+  shift = std::max(0, bit_length(reach[0] | reach[1] | reach[2]) + kFractionBits - kLocalBits);
+  const int left = std::max(0, kFractionBits - shift), right = std::max(0, shift - kFractionBits);
+  Int4 sum{};
+  for (Int4& corner : corners) sum += corner = (corner << left) >> right;
+  outline_[0] = outline_[faces + 2] = Int4{};
+  sum_ = sum;
+  centroid = divide_small(sum, faces + 2);
   features[0] = Vec3l{} - centroid;
-  features[1] = divide(widen(polygon[0]) + widen(polygon[faces]), 2) - centroid;
-  features[2] = opposite_mean - centroid;
-  measure_area_centre();
+  const Int4 middle = (corners.front() + corners.back() + 1) >> 1;
+  features[1] = widen(middle) - centroid;
+}
 
-  const std::int64_t normal_length = square_root(normal_squared);
-  std::int64_t squares = dot(centroid, centroid), off = distance_to_plane(*this, centroid);
-  for (std::uint32_t i = 0; i < corners; ++i) {
-    const Vec3l offset = widen(polygon[i]) - centroid;
-    squares += dot(offset, offset);
-    off += distance_to_plane(*this, offset);
-  }
-  radius_squared = squares / (corners + 1);
-  flatness = off / ((corners + 1) * normal_length);
-  std::int64_t opposite_off = 0;
+// Clamped to kLocalBits before they are shifted, which is the same as after it, but cannot
+// overflow.
+void Patch::measure_opposites() {
+  const int left = std::max(0, kFractionBits - shift), right = std::max(0, shift - kFractionBits);
+  const std::int32_t most = (1 << kLocalBits) << right >> left;
+  Int4 sum{};
   for (std::uint32_t i = 0; i < opposite_count_; ++i) {
-    opposite_off += distance_to_plane(*this, widen(opposites_[i]) - opposite_mean);
+    const std::uint32_t edge = outer_edges_[i];
+    const Int4 corner = (clamp_to(opposites_[i], most) << left) >> right;
+    sum += opposites_[i] = outline_[edge] + outline_[edge + 1] - corner;
   }
-  opposite_flatness = opposite_count_ == 0 ? 0 : opposite_off / (opposite_count_ * normal_length);
+  opposite_mean_ = opposite_count_ == 0 ? centroid : divide_small(sum, opposite_count_);
+  features[2] = opposite_mean_ - centroid;
 }
 
 void Patch::measure_normal() {
   Vec3l sum{};
   area = 0;
   for (std::uint32_t i = 0; i < faces; ++i) {
-    crosses[i] = cross(polygon[i], polygon[i + 1]);
-    sum += widen(crosses[i]);
-    area += manhattan(widen(crosses[i]));
+    const Int4 &a = outline_[i + 1], &b = outline_[i + 2];
+    const Vec3i product = cross(Vec3i{a[0], a[1], a[2]}, Vec3i{b[0], b[1], b[2]});
+    crosses[i] = product;
+    sum += Vec3l{product.x, product.y, product.z};
+    area += manhattan(product);
   }
-  if (faces == 0 && opposite_count_ > 0) {
-    sum = cross(widen(polygon[0]), widen(opposites_[0]) - widen(polygon[0]));
+  if (faces == 0) {
+    const Vec3l end = widen(outline_[1]);
+    sum = cross(end, widen(opposites_[0]) - end);
   }
   normal = shift_right(sum, std::max(0, bit_length(largest(sum)) - kLocalBits));
   if (normal == Vec3l{}) normal = {0, 0, 1};
   normal_squared = dot(normal, normal);
+  normal_length = square_root(normal_squared);
 }
 
 void Patch::measure_area_centre() {
@@ -172,11 +165,34 @@ void Patch::measure_area_centre() {
   Vec3l moments{};
   std::int64_t weights = 0;
   for (std::uint32_t i = 0; i < faces; ++i) {
-    const std::int64_t weight = manhattan(widen(crosses[i])) >> drop;
-    moments += weight * (widen(polygon[i]) + widen(polygon[i + 1]));
+    const std::int64_t weight = manhattan(crosses[i]) >> drop;
+    const Int4 sides = outline_[i + 1] + outline_[i + 2];
+    moments += weight * widen(sides);
     weights += weight;
   }
   if (weights > 0) features[3] = divide(moments, 3 * weights) - centroid;
+}
+
+// Squares about the centroid are made from those about kept.
+void Patch::measure_spread() {
+  const std::int64_t count = faces + 2;
+  const Vec3l up = normal;
+  const std::int64_t centre_height = dot(centroid, up);
+  std::int64_t squares = 0, off = std::abs(centre_height);
+  for (const Int4& corner : polygon()) {
+    const Vec3l at = widen(corner);
+    squares += dot(at, at);
+    off += std::abs(dot(at, up) - centre_height);
+  }
+  squares += count * dot(centroid, centroid) - 2 * dot(sum_, centroid);
+  radius_squared = squares / count;
+  flatness = off / (count * normal_length);
+  const std::int64_t mean_height = dot(opposite_mean_, up);
+  std::int64_t opposite_off = 0;
+  for (std::uint32_t i = 0; i < opposite_count_; ++i) {
+    opposite_off += std::abs(dot(opposites_[i], up) - mean_height);
+  }
+  opposite_flatness = opposite_count_ == 0 ? 0 : opposite_off / (opposite_count_ * normal_length);
 }
 
 Prediction predict(const Patch& patch, const Predictor& predictor) {
@@ -189,7 +205,7 @@ Prediction predict(const Patch& patch, const Predictor& predictor) {
   Prediction prediction;
   prediction.at = combine(patch, tangential, normal);
   const std::int64_t rise =
-      distance_to_plane(patch, prediction.at - patch.centroid) / square_root(patch.normal_squared);
+      distance_to_plane(patch, prediction.at - patch.centroid) / patch.normal_length;
   const std::int64_t spread = (5 * patch.flatness + 8 * rise + 6 * patch.opposite_flatness) / 16 +
                               square_root(patch.radius_squared) / 64;
   prediction.tangential_class = magnitude_class(patch.radius_squared, patch.shift);
@@ -203,7 +219,7 @@ Prediction predict_kept(const Patch& patch, const Predictor& predictor, Vec3i ad
   const Vec3l tangential = predictor.mirrored[0] * back, normal = predictor.mirrored[1] * back;
   prediction.at = combine(patch, tangential, normal) - patch.centroid;
   prediction.tangential_class = magnitude_class(dot(back, back), patch.shift);
-  const std::int64_t rise = distance_to_plane(patch, back) / square_root(patch.normal_squared);
+  const std::int64_t rise = distance_to_plane(patch, back) / patch.normal_length;
   prediction.normal_class = magnitude_class(rise * rise, patch.shift);
   return prediction;
 }
@@ -212,11 +228,12 @@ int split_cost(const Patch& patch, Vec3i added) {
   const Vec3l at = clamp_to(patch.local(added), std::int64_t{1} << kLocalBits);
   std::int64_t volume = 0;
   for (std::uint32_t i = 0; i < patch.faces; ++i) {
-    volume += std::abs(dot(at, widen(patch.crosses[i])));
+    const Vec3i& product = patch.crosses[i];
+    volume += std::abs(at.x * product.x + at.y * product.y + at.z * product.z);
   }
   int cost = 2 * half_octaves(volume) - half_octaves(patch.area);
   if (patch.kind != SplitKind::interior) {  // what the border sweeps
-    cost = std::max(cost, 2 * half_octaves(manhattan(cross(at, widen(patch.polygon[0])))));
+    cost = std::max(cost, 2 * half_octaves(manhattan(cross(at, widen(patch.polygon()[0])))));
   }
   return cost + 8 * patch.shift;
 }

@@ -7,8 +7,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
+#include "core/pm/fan.h"
 #include "core/pm/fixed_point.h"
+#include "core/pm/int4.h"
 #include "core/refine/refinable_mesh.h"
 
 namespace pmesh {
@@ -34,8 +37,8 @@ struct Predictor {
 };
 
 struct Patch {
-  /// Gathers the patch of a split at `site`, which must be possible in `mesh`.
-  void gather(const RefinableMesh& mesh, const SplitSite& site);
+  /// Gathers the patch of a split that `mesh` has `fan` for.
+  void gather(const RefinableMesh& mesh, const Fan& fan);
 
   std::size_t fan_class() const;  ///< Below kFanClasses.
 
@@ -47,12 +50,13 @@ struct Patch {
   Vec3i kept;               ///< On the lattice; the local frame's origin.
   int shift = 0;
   /// The fan's other vertices, kept's neighbours, ccw (border_last: cw): one more than faces.
-  std::array<Vec3i, kMaxMovedFaces + 1> polygon;
+  std::span<const Int4> polygon() const { return {outline_.data() + 1, std::size_t{faces} + 1}; }
   std::array<Vec3i, kMaxMovedFaces> crosses;  ///< Twice the faces' area vectors.
 
   Vec3l normal;                 ///< At most kLocalBits bits; never zero.
-  std::int64_t normal_squared;  ///< Its length's square.
-  std::int64_t area;            ///< The sum of the crosses' manhattan lengths.
+  std::int64_t normal_squared;  ///< Its length's square, and its length.
+  std::int64_t normal_length;
+  std::int64_t area;  ///< The sum of the crosses' manhattan lengths.
 
   Vec3l centroid;  ///< Of polygon and kept.
   /// Features, relative to the centroid: the kept vertex, the middle of the cut neighbours, the
@@ -63,15 +67,23 @@ struct Patch {
   std::int64_t opposite_flatness;  ///< The same of the parallelograms' ends, to their own mean.
 
  private:
-  void gather_fan(const RefinableMesh& mesh, const SplitSite& site);
-  void gather_ear(const RefinableMesh& mesh, const SplitSite& site);
-  void add_opposite(const RefinableMesh& mesh, HalfEdgeId outer);
-  void measure();
+  void gather_fan(const RefinableMesh& mesh, const Fan& fan);
+  void gather_ear(const RefinableMesh& mesh, HalfEdgeId glued_to);
+  void measure_polygon();
+  void measure_opposites();
   void measure_normal();
   void measure_area_centre();
+  void measure_spread();
 
-  std::array<Vec3i, kMaxMovedFaces + 2> opposites_;
+  // Kept, the polygon, kept again: outer edge e of the fan joins e and e + 1.
+  std::array<Int4, kMaxMovedFaces + 3> outline_;
+  // Beyond the outer edges that have a face there: the edge, and the face's third corner; once
+  // measured, the fourth corner of the parallelogram over that face.
+  std::array<std::uint16_t, kMaxMovedFaces + 2> outer_edges_;
+  std::array<Int4, kMaxMovedFaces + 2> opposites_;
   std::uint32_t opposite_count_ = 0;
+  Int4 sum_;  // of the polygon
+  Vec3l opposite_mean_;
 };
 
 /// Where the patch expects the new vertex, in local coordinates, and how far off it may be.

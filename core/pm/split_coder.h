@@ -9,6 +9,7 @@
 
 #include "core/base/result.h"
 #include "core/pm/batch_mesh.h"
+#include "core/pm/fan.h"
 #include "core/pm/fan_choice.h"
 #include "core/pm/format.h"
 #include "core/pm/patch.h"
@@ -27,18 +28,19 @@ class SplitCoder {
       : coder_(coder), header_(header), model_(model), mesh_(mesh), state_(state) {}
 
   /// Decodes the next batch, of at most `most` splits, into `batch`, or encodes `batch`, whose
-  /// splits are in the order of their kept vertices, with `parameters`; if it `continues` the last
-  /// one, all these come after that one's in the sweep. Fills in the costs. Afterwards the batch's
-  /// faces are covered: BatchMesh::apply() comes next.
+  /// splits are in that `order` of their kept vertices, with `parameters`; the rest of a sweep has
+  /// those of the batch before. Fills in the costs. Afterwards the batch's faces are covered:
+  /// BatchMesh::apply() comes next.
   Status code(std::vector<BatchSplit>& batch, std::uint32_t most,
-              const BatchParameters& parameters = {}, bool continues = false) {
+              BatchOrder order = BatchOrder::ids, const BatchParameters& parameters = {}) {
     batch_ = &batch;
     coder_.enter(SplitSection::batches);
     const std::uint32_t count = code_count(static_cast<std::uint32_t>(batch.size()));
     if (count == 0 || count > most) return bad_input("a batch has more splits than its chunk");
     if constexpr (Coder::kDecodes) batch.clear();
-    code_parameters(parameters);
-    Status status = state_.is_sparse(count) ? code_sparse(count) : code_dense(count, continues);
+    order = code_order(order);
+    if (order != BatchOrder::rest_of_sweep) code_parameters(parameters);
+    Status status = code_splits(count, order);
     if (status.ok() && failed()) return bad_input("the chunk ends inside a batch");
     return status;
   }
@@ -54,6 +56,14 @@ class SplitCoder {
     const int bits = static_cast<int>(
         coder_.raw(5, static_cast<std::uint32_t>(count == 0 ? 0 : bit_length(count) - 1)));
     return (std::uint32_t{1} << bits) | coder_.raw(bits, count & ((std::uint32_t{1} << bits) - 1));
+  }
+
+  BatchOrder code_order(BatchOrder order) {
+    if (coder_.bit(model_.goes_on, order == BatchOrder::rest_of_sweep)) {
+      return BatchOrder::rest_of_sweep;
+    }
+    return coder_.bit(model_.sweeps, order == BatchOrder::sweep) ? BatchOrder::sweep
+                                                                 : BatchOrder::ids;
   }
 
   void code_parameters(const BatchParameters& wanted) {
@@ -79,40 +89,62 @@ class SplitCoder {
     current = clamp_to(current + points_.code_tail(static_cast<int>(length), change), kMostWeight);
   }
 
+  Status code_splits(std::uint32_t count, BatchOrder order) {
+    if (order == BatchOrder::ids) return code_named(count);
+    if (order == BatchOrder::sweep) {
+      if (!state_.may_sweep()) return bad_input("a sweep begins too soon after the one before");
+      state_.begin_sweep();
+    }
+    return code_marked(count, state_.rest_of_sweep());
+  }
+
   // A mark at every vertex that may be split, until the last split.
-  Status code_dense(std::uint32_t count, bool continues) {
-    continues = coder_.bit(model_.continues, continues);
-    if (continues && !state_.has_batch()) return bad_input("a batch continues none");
+  Status code_marked(std::uint32_t count, std::span<const VertexId> sweep) {
     std::size_t next = 0;
-    const std::span<const VertexId> sweep = continues ? state_.rest_of_sweep() : state_.sweep();
     for (std::size_t place = 0; place < sweep.size(); ++place) {
       const VertexId v = sweep[place];
       prefetch(sweep, place);
-      const std::uint32_t free = state_.free_faces(v);
-      if (free == 0) continue;
-      AdaptiveBit& model = model_.mark[is_border(v)][std::min(
-          state_.valence(v), SplitModel::kValences - 1)][std::min(free, SplitModel::kFree - 1)];
+      if (state_.free_faces(v) == 0) continue;
       coder_.enter(SplitSection::marks);
-      if (!coder_.bit(model, is_wanted(next, v))) continue;
+      if (!coder_.bit(mark_model(v), is_wanted(next, v))) continue;
       if (Status coded = code_split(v, next++); !coded) return coded;
-      if (next == count) return {};
+      if (next < count) continue;
+      state_.swept(place + 1);
+      return {};
     }
     return bad_input("a batch has more splits than the mesh has vertices to split");
   }
 
-  // What the ring of a vertex some places further on needs first.
-  void prefetch(std::span<const VertexId> sweep, std::size_t place) const {
-    constexpr std::size_t kAhead = 8;
+  AdaptiveBit& mark_model(VertexId v) {
+    const std::uint32_t free = std::min(state_.free_faces(v), SplitModel::kFree - 1);
+    return model_.mark[is_border(v)][valence_class(v)][free];
+  }
+
+  // What the rings of the vertices at the next places need: from one place to the next each is
+  // walked one face further, so that nobody waits for it.
+  void prefetch(std::span<const VertexId> sweep, std::size_t place) {
     const HalfEdgeMesh& connectivity = mesh_.connectivity();
-    if (place + 2 * kAhead < sweep.size()) {
-      const VertexId v = sweep[place + 2 * kAhead];
+    if (place + 2 * kWalks < sweep.size()) {
+      const VertexId v = sweep[place + 2 * kWalks];
       connectivity.prefetch(v);
       state_.prefetch(v);
     }
-    if (place + kAhead < sweep.size()) {
-      const VertexId v = sweep[place + kAhead];
-      connectivity.prefetch(connectivity.outgoing(v));
+    if (sweep.size() >= kLargeMesh) walk_on();
+    if (place + kWalks < sweep.size()) {
+      const VertexId v = sweep[place + kWalks];
+      const HalfEdgeId first = connectivity.outgoing(v);
+      walks_[place % kWalks] = first;
+      connectivity.prefetch(first);
       mesh_.prefetch(v);
+    }
+  }
+
+  void walk_on() {
+    const HalfEdgeMesh& connectivity = mesh_.connectivity();
+    for (HalfEdgeId& h : walks_) {
+      if (!h.valid()) continue;
+      h = connectivity.rotate_ccw(h);
+      if (h.valid()) connectivity.prefetch(h);
     }
   }
 
@@ -122,7 +154,7 @@ class SplitCoder {
   }
 
   // The distance from one vertex to the next.
-  Status code_sparse(std::uint32_t count) {
+  Status code_named(std::uint32_t count) {
     std::uint64_t vertex = 0;
     for (std::size_t next = 0; next < count; ++next) {
       std::uint32_t gap = 0;
@@ -165,8 +197,8 @@ class SplitCoder {
     code_kind(v, site);
     Status cut = site.kind == SplitKind::interior ? code_interior(v, site) : code_border(v, site);
     if (!cut) return cut;
-    state_.cover(mesh_, site);
-    patch_.gather(mesh_, site);
+    state_.cover(mesh_, fan_);
+    patch_.gather(mesh_, fan_);
     coder_.enter(SplitSection::positions);
     return code_positions(entry);
   }
@@ -202,29 +234,35 @@ class SplitCoder {
   }
 
   Status code_interior(VertexId v, SplitSite& site) {
-    if (!ring_.gather(mesh_, v)) return code_at_hub(v, site);
-    const std::uint32_t most = ring_.find_runs(state_.covered());
+    if (!ring_.gather(mesh_, v, state_.covered())) return code_at_hub(v, site);
+    const std::uint32_t most = ring_.find_runs();
     if (most == 0) return bad_input("a split's vertex has no fan to split");
     const std::uint32_t size = code_size(v, 1, most, site.moved_faces);
-    const auto candidates = ring_.rank(mesh_, size, model_.parameters.fan);
-    std::size_t chosen = 0;
-    for (; chosen + 1 < candidates.size(); ++chosen) {
-      const bool wanted = ring_.half_edge(candidates[chosen].first) == site.half_edge;
-      if (coder_.bit(candidate_model(candidates, chosen), wanted)) break;
+    ring_.score(size, model_.parameters.fan);
+    auto ranked = ring_.likeliest();
+    for (std::size_t rank = 0; ranked[1] != VertexRing::kNone; ++rank) {
+      const bool wanted = half_edge_of(ranked[0]) == site.half_edge;
+      if (coder_.bit(candidate_model(ranked, rank), wanted)) break;
+      ranked = ring_.likeliest(ranked[0]);
     }
-    site.half_edge = ring_.half_edge(candidates[chosen].first);
+    site.half_edge = half_edge_of(ranked[0]);
     site.moved_faces = static_cast<std::uint16_t>(size);
+    fan_.take(v, ring_.run(VertexRing::first_face(ranked[0]), size));
     return {};
   }
 
-  AdaptiveBit& candidate_model(std::span<const VertexRing::Candidate> candidates, std::size_t at) {
-    const auto next =
-        std::min<std::int64_t>(7, ring_.lead(candidates[at], candidates[at + 1], 3) >> 4);
-    const auto after =
-        at + 2 < candidates.size()
-            ? std::min<std::int64_t>(3, ring_.lead(candidates[at], candidates[at + 2], 1) >> 4)
-            : 3;
-    return model_.candidate[std::min<std::size_t>(at, 3)][static_cast<std::size_t>(next)]
+  HalfEdgeId half_edge_of(VertexRing::Candidate c) const {
+    return ring_.half_edge(VertexRing::first_face(c));
+  }
+
+  // By how much the likeliest of the candidates that are left leads the next, and the one after it.
+  AdaptiveBit& candidate_model(const std::array<VertexRing::Candidate, 3>& ranked,
+                               std::size_t rank) {
+    const auto next = std::min<std::int64_t>(7, ring_.lead(ranked[0], ranked[1], 3) >> 4);
+    const auto after = ranked[2] != VertexRing::kNone
+                           ? std::min<std::int64_t>(3, ring_.lead(ranked[0], ranked[2], 1) >> 4)
+                           : 3;
+    return model_.candidate[std::min<std::size_t>(rank, 3)][static_cast<std::size_t>(next)]
                            [static_cast<std::size_t>(after)];
   }
 
@@ -235,7 +273,7 @@ class SplitCoder {
     Status named = name_half_edge(v, site, false);
     if (!named) return named;
     site.moved_faces = static_cast<std::uint16_t>(size);
-    return check_fan(site);
+    return find_fan(site);
   }
 
   // By its face: the half-edge that leaves `v`, or if `incoming` the one that ends there.
@@ -252,24 +290,19 @@ class SplitCoder {
     return bad_input("a split's face is not its vertex's");
   }
 
-  // Whether a split at `site`, whose half-edge is at its kept vertex, is possible and its faces
-  // are free.
-  Status check_fan(const SplitSite& site) const {
+  // Finds its fan if a split at `site`, whose half-edge is at its kept vertex, is possible and its
+  // faces are free.
+  Status find_fan(const SplitSite& site) {
     const HalfEdgeMesh& connectivity = mesh_.connectivity();
     if (Status possible = connectivity.check(site); !possible) return possible;
-    const bool clockwise = site.kind == SplitKind::border_last;
-    HalfEdgeId h = clockwise ? connectivity.next(site.half_edge) : site.half_edge;
-    for (std::uint32_t face = 0;;) {
-      if (!state_.is_free(HalfEdgeMesh::face(h))) return bad_input("two splits cover a face");
-      if (++face >= site.moved_faces) return {};
-      h = clockwise ? connectivity.rotate_cw(h) : connectivity.rotate_ccw(h);
-    }
+    fan_.walk(connectivity, site);
+    return state_.is_free(fan_) ? Status() : bad_input("two splits cover a face");
   }
 
   Status code_border(VertexId v, SplitSite& site) {
     const bool last = site.kind == SplitKind::border_last;
     std::uint32_t most = kMaxMovedFaces;
-    if (ring_.gather(mesh_, v)) {
+    if (ring_.gather(mesh_, v, state_.covered())) {
       most = free_border_faces(last);
       const HalfEdgeId end = ring_.half_edge(last ? ring_.faces() - 1 : 0);
       const HalfEdgeId half_edge = last ? HalfEdgeMesh::prev(end) : end;
@@ -278,14 +311,13 @@ class SplitCoder {
       return named;
     }
     site.moved_faces = static_cast<std::uint16_t>(code_size(v, 0, most, site.moved_faces));
-    return check_fan(site);
+    return find_fan(site);
   }
 
   // At that end of the ring.
   std::uint32_t free_border_faces(bool last) const {
     std::uint32_t count = 0;
-    while (count < ring_.faces() &&
-           state_.is_free(ring_.face(last ? ring_.faces() - 1 - count : count))) {
+    while (count < ring_.faces() && ring_.is_free(last ? ring_.faces() - 1 - count : count)) {
       ++count;
     }
     return count;
@@ -319,7 +351,11 @@ class SplitCoder {
   BatchMesh& state_;
   std::vector<BatchSplit>* batch_ = nullptr;
   PointCoder<Coder> points_{coder_, header_.lattice.bits};
+  static constexpr std::size_t kLargeMesh = 1 << 16;  // vertices that do not fit the caches
+  static constexpr std::size_t kWalks = 6;
+  std::array<HalfEdgeId, kWalks> walks_;  // around vertices to come, in turn
   VertexRing ring_;
+  Fan fan_;
   Patch patch_;
 };
 

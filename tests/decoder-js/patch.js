@@ -14,15 +14,21 @@ export class Patch {
     this.kind = site.kind;
     this.moved = site.moved;
     this.kept = mesh.position(mesh.kept(site));
-    const { polygon, opposites } = site.moved === 0 ? ear(mesh, site, this.kept) : fan(mesh, site);
+    const { polygon, beyond } = site.moved === 0 ? ear(mesh, site) : fan(mesh, site);
     const reach = Math.max(...polygon.map((p) => maxNorm(subtract(p, this.kept))));
     this.shift = Math.max(0, bitLength(reach) - 11);
     this.polygon = polygon.map((p) => this.local(p));
-    this.#measure(opposites.map((p) => this.local(p)));
+    this.#measure(beyond.map((face) => this.#opposite(face.map((v) => mesh.position(v)))));
   }
 
   local(point) {
     return clampEach(shiftEach(scale(8, subtract(point, this.kept)), this.shift), 2 ** 17);
+  }
+
+  // Across the edge from a to b, of a face with the third corner c.
+  #opposite([a, b, c]) {
+    const corner = clampEach(this.local(c), 2 ** 14);
+    return subtract(add(this.local(a), this.local(b)), corner);
   }
 
   #measure(opposites) {
@@ -114,7 +120,8 @@ export class Patch {
   }
 }
 
-// The moved faces' outer vertices, and the parallelograms across their outer edges.
+// The moved faces' outer vertices, and the faces beyond their outer edges: the edge's ends, and the
+// third corner.
 function fan(mesh, site) {
   const { kind } = site;
   const spokes = mesh.fan(site);
@@ -126,17 +133,15 @@ function fan(mesh, site) {
     : [mesh.target(spokes[0]), ...spokes.map((h) => mesh.apex(h))];
   return {
     polygon: polygon.map((v) => mesh.position(v)),
-    opposites: outer.filter((h) => !mesh.isBorder(h)).map((h) => {
-      const [a, b, c] = [mesh.origin(h), mesh.target(h), mesh.apex(mesh.twin(h))];
-      return subtract(add(mesh.position(a), mesh.position(b)), mesh.position(c));
-    }),
+    beyond: outer.filter((h) => !mesh.isBorder(h))
+      .map((h) => [mesh.origin(h), mesh.target(h), mesh.apex(mesh.twin(h))]),
   };
 }
 
-function ear(mesh, { kind, halfEdge }, kept) {
-  const other = mesh.position(kind === FIRST ? mesh.target(halfEdge) : mesh.origin(halfEdge));
+function ear(mesh, { kind, halfEdge }) {
+  const ends = [mesh.origin(halfEdge), mesh.target(halfEdge)];
   return {
-    polygon: [other],
-    opposites: [subtract(add(other, kept), mesh.position(mesh.apex(halfEdge)))],
+    polygon: [mesh.position(ends[kind === FIRST ? 1 : 0])],
+    beyond: [[...ends, mesh.apex(halfEdge)]],
   };
 }

@@ -7,6 +7,7 @@ import { Patch } from './patch.js';
 
 const MOST_MOVED = 255, MOST_RANKED = 64;
 const BORDER = 4; // the last set of weights for fans
+const WINDOW = 4096; // splits that are sorted together
 
 const lengthModel = () => ({ above: table(), up: table(8), down: table(8) });
 const residualModel = () => ({
@@ -18,10 +19,10 @@ export class SplitDecoder {
   #mesh; #header; #reader;
   #covered; #coveredAt; // by face; by vertex, how many of its faces
   #families = []; // by vertex
-  #lastKept = null; // by the last split of the batch before
+  #sweep = []; #swept = 0; #sweptAt = 0; // how many of it are done; vertices when it began
   #bits = {
     weightLength: table(8), mark: table(2, 16, 12), gapLength: table(32),
-    interior: table(16), last: table(), continues: table(),
+    interior: table(16), last: table(), goesOn: table(), sweeps: table(),
     larger: table(2, 10, 16, 10), candidate: table(4, 8, 4),
     added: residualModel(), kept: residualModel(),
   };
@@ -58,8 +59,12 @@ export class SplitDecoder {
     const bits = this.#raw(5);
     const count = 2 ** bits + this.#raw(bits);
     require(count <= most, 'a batch has more splits than its chunk');
+    if (this.#bit(this.#bits.goesOn)) return this.#marked(count);
+    const sweeps = this.#bit(this.#bits.sweeps);
     this.#readWeights();
-    return 32 * count < this.#mesh.vertices ? this.#sparse(count) : this.#dense(count);
+    if (!sweeps) return this.#named(count);
+    this.#beginSweep();
+    return this.#marked(count);
   }
 
   #readWeights() {
@@ -90,19 +95,20 @@ export class SplitDecoder {
   #valenceClass(v) { return Math.min(this.#mesh.valence[v], 15); }
 
   // All vertices by family, in each by id.
-  #sweep() {
-    return Array.from(this.#families.keys())
+  #beginSweep() {
+    const { vertices } = this.#mesh;
+    require(64 * (vertices - this.#sweptAt) >= vertices, 'a sweep begins too soon');
+    this.#sweep = Array.from(this.#families.keys())
       .sort((a, b) => this.#families[a] - this.#families[b]); // stable
+    this.#swept = 0;
+    this.#sweptAt = vertices;
   }
 
-  #dense(count) {
-    const continues = this.#bit(this.#bits.continues);
-    require(!continues || this.#lastKept !== null, 'a batch continues none');
-    const sweep = this.#sweep();
+  #marked(count) {
     const splits = [];
-    for (let i = continues ? sweep.indexOf(this.#lastKept) + 1 : 0; splits.length < count; ++i) {
-      require(i < sweep.length, 'a batch has more splits than vertices to split');
-      const v = sweep[i], free = this.#free(v);
+    while (splits.length < count) {
+      require(this.#swept < this.#sweep.length, 'a batch has more splits than vertices to split');
+      const v = this.#sweep[this.#swept++], free = this.#free(v);
       if (free === 0) continue;
       const marks = this.#bits.mark[this.#onBorder(v)][this.#valenceClass(v)];
       if (this.#bit(marks[Math.min(free, 11)])) splits.push(this.#split(v));
@@ -110,7 +116,7 @@ export class SplitDecoder {
     return splits;
   }
 
-  #sparse(count) {
+  #named(count) {
     const splits = [];
     for (let v = 0; splits.length < count; ++v) {
       v += this.#gap();
@@ -166,7 +172,7 @@ export class SplitDecoder {
   #interior(v, ring) {
     if (ring === null) {
       const moved = this.#size(v, 1, MOST_MOVED);
-      return { kind: INTERIOR, halfEdge: this.#named(v), moved };
+      return { kind: INTERIOR, halfEdge: this.#halfEdge(v), moved };
     }
     const closed = !this.#mesh.isBorder(ring[0]);
     const runs = freeRuns(ring, !closed, this.#covered);
@@ -187,7 +193,7 @@ export class SplitDecoder {
 
   #border(v, kind, ring) {
     if (ring === null) {
-      const leaving = this.#named(v);
+      const leaving = this.#halfEdge(v);
       const halfEdge = kind === LAST ? previous(leaving) : leaving;
       require(this.#mesh.isBorder(halfEdge), 'a border split is not at a border');
       return { kind, halfEdge, moved: this.#size(v, 0, MOST_MOVED) };
@@ -199,7 +205,7 @@ export class SplitDecoder {
   }
 
   // The half-edge that leaves `v` in a face named outright.
-  #named(v) {
+  #halfEdge(v) {
     const face = this.#raw(bitLength(this.#mesh.faces - 1));
     require(face < this.#mesh.faces, 'a face does not exist');
     const corner = [0, 1, 2].find((k) => this.#mesh.origin(3 * face + k) === v);
@@ -275,11 +281,13 @@ export class SplitDecoder {
         for (let k = 0; k < 3; ++k) this.#coveredAt[this.#mesh.origin(3 * face + k)] = 0;
       }
     }
-    this.#lastKept = splits.at(-1).kept;
-    splits.sort((a, b) => b.bucket - a.bucket); // stable
-    for (const { kept, site, added, keptTo } of splits) {
-      this.#mesh.split(site, added, keptTo);
-      this.#families.push(this.#families[kept]);
+    for (let first = 0; first < splits.length; first += WINDOW) {
+      const window = splits.slice(first, first + WINDOW);
+      window.sort((a, b) => b.bucket - a.bucket); // stable
+      for (const { kept, site, added, keptTo } of window) {
+        this.#mesh.split(site, added, keptTo);
+        this.#families.push(this.#families[kept]);
+      }
     }
   }
 }

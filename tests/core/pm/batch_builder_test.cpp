@@ -40,13 +40,13 @@ class Replay {
   const RefinableMesh& mesh() const { return *mesh_; }
   const LatticeMesh& input() const { return input_; }
 
-  std::vector<BatchSplit> next(std::size_t most) { return builder_->next(most, *mesh_, *state_); }
-  void take_back(std::size_t kept) { builder_->take_back(kept); }
+  std::vector<BatchSplit> next() { return builder_->next(*mesh_, *state_); }
   BatchMesh& state() { return *state_; }
-  void apply(const std::vector<BatchSplit>& batch) {
+  /// The splits of next()'s batch from `begin` on, or some of them.
+  void apply(const std::vector<BatchSplit>& splits, std::size_t begin = 0) {
     const std::uint32_t first_vertex = mesh_->vertex_count();
-    ASSERT_TRUE(state_->apply(batch, *mesh_).ok());
-    builder_->applied(state_->order(), first_vertex);
+    ASSERT_TRUE(state_->apply(splits, *mesh_).ok());
+    builder_->applied(begin, state_->order(), first_vertex);
   }
 
  private:
@@ -70,7 +70,7 @@ class Replay {
 TEST(BatchBuilder, GivesBackTheMeshThatWasDecimated) {
   for (const shapes::Shape& shape : shapes::manifolds()) {
     Replay replay(shape.mesh);
-    while (replay.left() > 0) replay.apply(replay.next(1000));
+    while (replay.left() > 0) replay.apply(replay.next());
     EXPECT_TRUE(same_triangles(replay.mesh().snapshot(), replay.input())) << shape.name;
   }
 }
@@ -95,11 +95,11 @@ void expect_apart(const std::vector<BatchSplit>& batch, const HalfEdgeMesh& mesh
   }
 }
 
-// Of a sparse batch by id, of a dense one by the sweep.
+// By id if they are named, else by the sweep.
 void expect_in_order(const std::vector<BatchSplit>& batch, BatchMesh& state) {
-  const auto sweep = state.sweep();
+  const auto sweep = state.vertices_to_sweep();
   std::vector<VertexId> order(sweep.begin(), sweep.end());
-  if (state.is_sparse(batch.size())) std::sort(order.begin(), order.end());
+  if (state.order_of(batch.size()) == BatchOrder::ids) std::sort(order.begin(), order.end());
   auto at = order.begin();
   for (const BatchSplit& entry : batch) {
     at = std::find(at, order.end(), entry.kept);
@@ -111,9 +111,8 @@ TEST(BatchBuilder, SplitsOfABatchKeepApartAndComeInTheOrderOfTheirVertices) {
   for (const shapes::Shape& shape : shapes::manifolds()) {
     Replay replay(shape.mesh);
     while (replay.left() > 0) {
-      const auto batch = replay.next(50);
+      const auto batch = replay.next();
       ASSERT_FALSE(batch.empty());
-      EXPECT_LE(batch.size(), 50u);
       expect_apart(batch, replay.mesh().connectivity());
       expect_in_order(batch, replay.state());
       replay.apply(batch);
@@ -121,56 +120,26 @@ TEST(BatchBuilder, SplitsOfABatchKeepApartAndComeInTheOrderOfTheirVertices) {
   }
 }
 
-TEST(BatchBuilder, WhatItTakesBackComesAgain) {
-  Replay replay(shapes::bumped(shapes::icosphere(3), 0.05));
-  while (replay.left() > 0) {
-    auto first = replay.next(1'000'000);
-    const std::size_t left = replay.left();
-    const std::vector<BatchSplit> rest(first.begin() + (first.size() + 1) / 2, first.end());
-    first.resize(first.size() - rest.size());
-    replay.take_back(first.size());
-    EXPECT_EQ(replay.left(), left + rest.size());
-    replay.apply(first);
-    if (rest.empty()) continue;
-    auto second = replay.next(rest.size());
-    EXPECT_EQ(replay.left(), left);
-    expect_apart(second, replay.mesh().connectivity());
-    expect_in_order(second, replay.state());
-    replay.apply(second);
-  }
-  EXPECT_TRUE(same_triangles(replay.mesh().snapshot(), replay.input()));
-}
-
-TEST(BatchBuilder, HalvesOfADenseBatchComeOneAfterTheOtherInTheSweep) {
+TEST(BatchBuilder, PartsOfABatchCanBeAppliedOneAfterTheOther) {
   Replay replay(shapes::bumped(shapes::icosphere(4), 0.05));
   while (replay.left() > 0) {
-    auto batch = replay.next(1'000'000);
-    const std::size_t half = batch.size() / 2;
-    if (replay.state().is_sparse(half / 2)) {
-      replay.apply(batch);
-      continue;
+    const std::vector<BatchSplit> batch = replay.next();
+    const std::size_t part = batch.size() / 3 + 1;
+    for (std::size_t begin = 0; begin < batch.size(); begin += part) {
+      const std::size_t end = std::min(batch.size(), begin + part);
+      replay.apply({batch.begin() + static_cast<std::ptrdiff_t>(begin),
+                    batch.begin() + static_cast<std::ptrdiff_t>(end)},
+                   begin);
     }
-    std::set<VertexId> rest;
-    for (std::size_t i = half; i < batch.size(); ++i) rest.insert(batch[i].kept);
-    replay.take_back(half);
-    batch.resize(half);
-    replay.apply(batch);
-    const auto second = replay.next(rest.size());
-    const auto to_sweep = replay.state().rest_of_sweep();
-    for (const BatchSplit& entry : second) {
-      EXPECT_TRUE(rest.erase(entry.kept) == 1);
-      EXPECT_NE(std::find(to_sweep.begin(), to_sweep.end(), entry.kept), to_sweep.end());
-    }
-    EXPECT_TRUE(rest.empty());
-    replay.apply(second);
   }
+  EXPECT_TRUE(same_triangles(replay.mesh().snapshot(), replay.input()));
 }
 
 TEST(BatchBuilder, TakesTheNextRecordsOfTheLogAndLeavesTheRest) {
   Replay replay(shapes::bumped(shapes::grid(12, 9), 0.05));
   while (replay.left() > 0) {
     const std::size_t before = replay.left();
-    const auto batch = replay.next(1'000'000);
+    const auto batch = replay.next();
     EXPECT_EQ(replay.left(), before - batch.size());
     replay.apply(batch);
   }
@@ -194,7 +163,7 @@ TEST(BatchBuilder, PartsRecordsThatNeedEachOther) {
   ASSERT_TRUE(need_each_other(replay.log(), 0, replay.left()));
   while (replay.left() > 0) {
     const std::size_t end = replay.left();
-    const auto batch = replay.next(1'000'000);
+    const auto batch = replay.next();
     EXPECT_FALSE(need_each_other(replay.log(), replay.left(), end));
     replay.apply(batch);
   }

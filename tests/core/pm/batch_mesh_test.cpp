@@ -54,6 +54,12 @@ std::vector<SplitSite> every_site(const HalfEdgeMesh& mesh) {
   return sites;
 }
 
+Fan fan_of(const SplitSite& site, const RefinableMesh& mesh) {
+  Fan fan;
+  fan.walk(mesh.connectivity(), site);
+  return fan;
+}
+
 void apply_one(const SplitSite& site, BatchMesh& state, RefinableMesh& mesh) {
   const VertexId kept = kept_vertex(mesh.connectivity(), site);
   ASSERT_TRUE(state.apply(std::vector<BatchSplit>{{{site, {}}, kept}}, mesh).ok());
@@ -66,7 +72,7 @@ TEST(BatchMesh, KeepsCountAfterEveryKindOfSplit) {
   for (const SplitSite& site : sites) {
     RefinableMesh mesh = before;
     BatchMesh state(mesh);
-    state.cover(mesh, site);
+    state.cover(mesh, fan_of(site, mesh));
     apply_one(site, state, mesh);
     expect_counts(state, mesh);
   }
@@ -76,12 +82,13 @@ TEST(BatchMesh, CoversTheFanOrTheFaceUnderAnEar) {
   const RefinableMesh mesh = grid();
   for (const SplitSite& site : every_site(mesh.connectivity())) {
     BatchMesh state(mesh);
-    state.cover(mesh, site);
+    state.cover(mesh, fan_of(site, mesh));
     const std::uint32_t faces = std::max<std::uint32_t>(1, site.moved_faces);
     const auto& covered = state.covered();
     EXPECT_EQ(std::accumulate(covered.begin(), covered.end(), 0u), faces);
     const VertexId kept = kept_vertex(mesh.connectivity(), site);
     EXPECT_EQ(state.free_faces(kept), state.valence(kept) - faces);
+    EXPECT_FALSE(state.is_free(fan_of(site, mesh)));
   }
 }
 
@@ -89,8 +96,8 @@ TEST(BatchMesh, UncoversAll) {
   const RefinableMesh mesh = grid();
   BatchMesh state(mesh);
   for (const SplitSite& site : every_site(mesh.connectivity())) {
-    if (!state.is_free(HalfEdgeMesh::face(site.half_edge)) || site.moved_faces > 1) continue;
-    state.cover(mesh, site);
+    const Fan fan = fan_of(site, mesh);
+    if (state.is_free(fan)) state.cover(mesh, fan);
   }
   state.uncover(mesh);
   expect_counts(state, mesh);
@@ -119,14 +126,43 @@ TEST(BatchMesh, RefusesASplitThatIsNotPossible) {
   EXPECT_FALSE(state.apply(std::vector<BatchSplit>{{{site, {}}, kept}}, mesh).ok());
 }
 
-TEST(BatchMesh, IsSparseBelowASplitIn32Vertices) {
+// Ears on all border half-edges, of 50 costs.
+std::vector<BatchSplit> ears(const RefinableMesh& mesh) {
+  std::vector<BatchSplit> batch;
+  for (VertexId v(0); v.value < mesh.vertex_count(); ++v.value) {
+    if (!mesh.connectivity().is_border(v)) continue;
+    const SplitSite ear{mesh.connectivity().outgoing(v), 0, SplitKind::border_first};
+    batch.push_back({{ear, {}}, v, 2 * static_cast<int>(batch.size() % 50)});
+  }
+  return batch;
+}
+
+TEST(BatchMesh, SortsWindowsOf4096Splits) {
+  RefinableMesh mesh =
+      make_split_base("triangles", shapes::isolated_triangles(3000), 16, false).refinable();
+  BatchMesh state(mesh);
+  const std::vector<BatchSplit> batch = ears(mesh);
+  ASSERT_EQ(batch.size(), 9000u);
+  ASSERT_TRUE(state.apply(batch, mesh).ok());
+  std::vector<std::uint32_t> expected(batch.size());
+  std::iota(expected.begin(), expected.end(), 0u);
+  for (std::size_t begin = 0; begin < batch.size(); begin += 4096) {
+    std::stable_sort(expected.begin() + begin,
+                     expected.begin() + std::min(batch.size(), begin + 4096),
+                     [&](auto a, auto b) { return batch[a].cost > batch[b].cost; });
+  }
+  const auto order = state.order();
+  EXPECT_EQ(std::vector<std::uint32_t>(order.begin(), order.end()), expected);
+}
+
+TEST(BatchMesh, NamesTheVerticesOfFewerSplitsThanOneIn32) {
   const BatchMesh state(grid());  // of 25 vertices
-  EXPECT_TRUE(state.is_sparse(0));
-  EXPECT_FALSE(state.is_sparse(1));
+  EXPECT_EQ(state.order_of(0), BatchOrder::ids);
+  EXPECT_EQ(state.order_of(1), BatchOrder::sweep);
   const SplitBase base = make_split_base("ball", shapes::icosphere(3), 12, false);
   const BatchMesh ball(base.refinable());  // of 642
-  EXPECT_TRUE(ball.is_sparse(20));
-  EXPECT_FALSE(ball.is_sparse(21));
+  EXPECT_EQ(ball.order_of(20), BatchOrder::ids);
+  EXPECT_EQ(ball.order_of(21), BatchOrder::sweep);
 }
 
 std::vector<std::uint32_t> values(std::span<const VertexId> vertices) {
@@ -149,7 +185,7 @@ TEST(BatchMesh, SweepsOverABaseById) {
   BatchMesh state(mesh);
   std::vector<std::uint32_t> ids(mesh.vertex_count());
   std::iota(ids.begin(), ids.end(), 0u);
-  EXPECT_EQ(values(state.sweep()), ids);
+  EXPECT_EQ(values(state.vertices_to_sweep()), ids);
 }
 
 TEST(BatchMesh, SweepsOverASplitVertexRightAfterItsKeptOneWhateverTheSplit) {
@@ -157,11 +193,11 @@ TEST(BatchMesh, SweepsOverASplitVertexRightAfterItsKeptOneWhateverTheSplit) {
   for (const SplitSite& site : every_site(before.connectivity())) {
     RefinableMesh mesh = before;
     BatchMesh state(mesh);
-    std::vector<std::uint32_t> expected = values(state.sweep());
+    std::vector<std::uint32_t> expected = values(state.vertices_to_sweep());
     const VertexId kept = kept_vertex(mesh.connectivity(), site);
     expected.insert(expected.begin() + kept.value + 1, before.vertex_count());
     apply_one(site, state, mesh);
-    EXPECT_EQ(values(state.sweep()), expected);
+    EXPECT_EQ(values(state.vertices_to_sweep()), expected);
   }
 }
 
@@ -170,7 +206,8 @@ TEST(BatchMesh, AFamilyIsSweptByIdWhicheverOfItWasSplit) {
   BatchMesh state(mesh);
   for (const std::uint32_t kept : {1u, 0u, 3u, 1u, 4u}) split_at(VertexId(kept), state, mesh);
   // 3, 5 and 6 are of 1's family, 4 and 7 of 0's.
-  EXPECT_EQ(values(state.sweep()), (std::vector<std::uint32_t>{0, 4, 7, 1, 3, 5, 6, 2}));
+  EXPECT_EQ(values(state.vertices_to_sweep()),
+            (std::vector<std::uint32_t>{0, 4, 7, 1, 3, 5, 6, 2}));
 }
 
 TEST(BatchMesh, VerticesThatArriveFoundFamiliesAfterAllOthers) {
@@ -179,29 +216,42 @@ TEST(BatchMesh, VerticesThatArriveFoundFamiliesAfterAllOthers) {
   split_at(VertexId(0), state, mesh);
   ASSERT_TRUE(mesh.append(triangle().snapshot()).ok());  // 4, 5 and 6
   state.grow(mesh);
-  EXPECT_EQ(values(state.sweep()), (std::vector<std::uint32_t>{0, 3, 1, 2, 4, 5, 6}));
+  EXPECT_EQ(values(state.vertices_to_sweep()), (std::vector<std::uint32_t>{0, 3, 1, 2, 4, 5, 6}));
   split_at(VertexId(4), state, mesh);
   split_at(VertexId(3), state, mesh);
-  EXPECT_EQ(values(state.sweep()), (std::vector<std::uint32_t>{0, 3, 8, 1, 2, 4, 7, 5, 6}));
+  EXPECT_EQ(values(state.vertices_to_sweep()),
+            (std::vector<std::uint32_t>{0, 3, 8, 1, 2, 4, 7, 5, 6}));
 }
 
-TEST(BatchMesh, TheRestOfTheSweepBeginsAfterTheKeptVertexOfTheLastSplit) {
+TEST(BatchMesh, ASweepGoesOnOverTheVerticesThatThereWereWhenItBegan) {
   RefinableMesh mesh = grid();
   BatchMesh state(mesh);
-  EXPECT_FALSE(state.has_batch());
-  std::vector<BatchSplit> batch;
-  for (const std::uint32_t corner : {1u, 3u}) {  // the latter is applied first
-    const SplitSite ear{mesh.connectivity().outgoing(VertexId(corner)), 0, SplitKind::border_first};
-    batch.push_back({{ear, {}}, VertexId(corner), 100 * static_cast<int>(corner)});
-  }
-  ASSERT_TRUE(state.apply(batch, mesh).ok());
-  EXPECT_TRUE(state.has_batch());
-  // 25 is of 3's family, 26 of 1's.
-  std::vector<std::uint32_t> rest = {25, 4};
-  for (std::uint32_t v = 5; v < 25; ++v) rest.push_back(v);
+  EXPECT_TRUE(state.rest_of_sweep().empty());
+  state.begin_sweep();
+  state.swept(4);
+  split_at(VertexId(3), state, mesh);
+  ASSERT_TRUE(mesh.append(triangle().snapshot()).ok());
+  state.grow(mesh);
+  std::vector<std::uint32_t> rest(21);
+  std::iota(rest.begin(), rest.end(), 4u);
   EXPECT_EQ(values(state.rest_of_sweep()), rest);
-  split_at(VertexId(24), state, mesh);
-  EXPECT_EQ(values(state.rest_of_sweep()), (std::vector<std::uint32_t>{27}));
+  state.begin_sweep();
+  EXPECT_EQ(state.rest_of_sweep().size(), 29u);
+}
+
+TEST(BatchMesh, ANewSweepTakesA64thOfNewVertices) {
+  const SplitBase base = make_split_base("grid", shapes::grid(20, 20), 12, false);
+  RefinableMesh mesh = base.refinable();  // of 441 vertices
+  BatchMesh state(mesh);
+  EXPECT_TRUE(state.may_sweep());
+  state.begin_sweep();
+  for (int split = 0; split < 7; ++split) {
+    EXPECT_FALSE(state.may_sweep()) << split;
+    EXPECT_EQ(state.order_of(100), BatchOrder::ids);
+    split_at(VertexId(0), state, mesh);
+  }
+  EXPECT_TRUE(state.may_sweep());  // 64 * 7 = 448
+  EXPECT_EQ(state.order_of(100), BatchOrder::sweep);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "core/pm/fan_choice.h"
 
-#include <algorithm>
+#include <array>
 
 #include <gtest/gtest.h>
 
@@ -20,11 +20,17 @@ RefinableMesh half_disc(int faces) {
   return make_split_base("half disc", shapes::border_hub(faces), 10, false).refinable();
 }
 
+std::vector<std::uint8_t> covered(std::size_t faces, std::initializer_list<std::size_t> at) {
+  std::vector<std::uint8_t> flags(faces);
+  for (const std::size_t f : at) flags[f] = 1;
+  return flags;
+}
+
 TEST(VertexRing, StartsAtTheSmallestFaceOfAnInteriorVertex) {
   const RefinableMesh mesh = make_split_base("ball", shapes::icosphere(2), 10, false).refinable();
   for (VertexId v(0); v.value < mesh.vertex_count(); ++v.value) {
     VertexRing ring;
-    ASSERT_TRUE(ring.gather(mesh, v));
+    ASSERT_TRUE(ring.gather(mesh, v, covered(mesh.face_count(), {})));
     EXPECT_FALSE(ring.border());
     for (std::uint32_t i = 0; i < ring.faces(); ++i) {
       EXPECT_GE(ring.face(i), ring.face(0));
@@ -38,34 +44,30 @@ TEST(VertexRing, StartsAtTheSmallestFaceOfAnInteriorVertex) {
 TEST(VertexRing, StartsAtTheBorderOfABorderVertex) {
   const RefinableMesh mesh = half_disc(5);
   VertexRing ring;
-  ASSERT_TRUE(ring.gather(mesh, kCentre));
+  ASSERT_TRUE(ring.gather(mesh, kCentre, covered(5, {1})));
   EXPECT_TRUE(ring.border());
   EXPECT_EQ(ring.faces(), 5u);
   EXPECT_EQ(ring.half_edge(0), mesh.connectivity().outgoing(kCentre));
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(ring.is_free(i), ring.face(i) != FaceId(1));
 }
 
 TEST(VertexRing, HoldsSixtyFourFacesAndNoMore) {
   VertexRing ring;
-  EXPECT_TRUE(ring.gather(disc(64), kCentre));
+  EXPECT_TRUE(ring.gather(disc(64), kCentre, covered(64, {})));
   EXPECT_EQ(ring.faces(), 64u);
-  EXPECT_FALSE(ring.gather(disc(65), kCentre));
-  EXPECT_TRUE(ring.gather(half_disc(64), kCentre));
-  EXPECT_FALSE(ring.gather(half_disc(65), kCentre));
-}
-
-std::vector<std::uint8_t> covered(std::size_t faces, std::initializer_list<std::size_t> at) {
-  std::vector<std::uint8_t> flags(faces);
-  for (const std::size_t f : at) flags[f] = 1;
-  return flags;
+  EXPECT_FALSE(ring.gather(disc(65), kCentre, covered(65, {})));
+  EXPECT_TRUE(ring.gather(half_disc(64), kCentre, covered(64, {})));
+  EXPECT_FALSE(ring.gather(half_disc(65), kCentre, covered(65, {})));
 }
 
 // The longest run, and how many runs of each length there are.
 std::vector<std::size_t> runs(const RefinableMesh& mesh, const std::vector<std::uint8_t>& flags) {
   VertexRing ring;
-  EXPECT_TRUE(ring.gather(mesh, kCentre));
-  std::vector<std::size_t> counts = {ring.find_runs(flags)};
+  EXPECT_TRUE(ring.gather(mesh, kCentre, flags));
+  std::vector<std::size_t> counts = {ring.find_runs()};
   for (std::uint32_t length = 1; length <= counts[0]; ++length) {
-    counts.push_back(ring.rank(mesh, length, initial_parameters().fan).size());
+    ring.score(length, initial_parameters().fan);
+    counts.push_back(ring.candidates().size());
   }
   return counts;
 }
@@ -89,25 +91,56 @@ TEST(VertexRing, EveryCandidateIsARunOfFreeFaces) {
   const RefinableMesh mesh = disc(20);
   const auto flags = covered(20, {0, 3, 4, 11, 17});
   VertexRing ring;
-  ASSERT_TRUE(ring.gather(mesh, kCentre));
-  ring.find_runs(flags);
-  for (const auto& candidate : ring.rank(mesh, 3, initial_parameters().fan)) {
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      EXPECT_EQ(flags[ring.face((candidate.first + i) % 20).value], 0);
+  ASSERT_TRUE(ring.gather(mesh, kCentre, flags));
+  ring.find_runs();
+  ring.score(3, initial_parameters().fan);
+  for (const VertexRing::Candidate candidate : ring.candidates()) {
+    const auto half_edges = ring.run(VertexRing::first_face(candidate), 3);
+    EXPECT_EQ(half_edges[0], ring.half_edge(VertexRing::first_face(candidate)));
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(flags[HalfEdgeMesh::face(half_edges[i]).value], 0);
+      if (i == 0) continue;
+      EXPECT_EQ(mesh.connectivity().rotate_ccw(half_edges[i - 1]), half_edges[i]);
     }
   }
 }
 
+// All candidates, likeliest first.
+std::vector<VertexRing::Candidate> ranked(const VertexRing& ring) {
+  std::vector<VertexRing::Candidate> all;
+  for (auto next = ring.likeliest(); next[0] != VertexRing::kNone; next = ring.likeliest(next[0])) {
+    all.push_back(next[0]);
+  }
+  return all;
+}
+
 TEST(VertexRing, RanksByScoreAndTiesByPlace) {
-  RefinableMesh even = disc(8);
+  const RefinableMesh even = disc(8);
   VertexRing ring;
-  ASSERT_TRUE(ring.gather(even, kCentre));
-  ring.find_runs(covered(8, {}));
-  const auto ties = ring.rank(even, 2, {{0, 0, 0}});
-  for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(ties[i].first, i);
-  const auto ranked = ring.rank(even, 2, initial_parameters().fan);
-  EXPECT_TRUE(std::is_sorted(ranked.begin(), ranked.end(),
-                             [](const auto& a, const auto& b) { return a.score > b.score; }));
+  ASSERT_TRUE(ring.gather(even, kCentre, covered(8, {})));
+  ring.find_runs();
+  ring.score(2, {{0, 0, 0}});
+  const auto ties = ranked(ring);
+  ASSERT_EQ(ties.size(), 8u);
+  for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(VertexRing::first_face(ties[i]), i);
+  ring.score(2, initial_parameters().fan);
+  const auto all = ranked(ring);
+  ASSERT_EQ(all.size(), 8u);
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) EXPECT_GE(ring.lead(all[i], all[i + 1], 1), 0);
+}
+
+TEST(VertexRing, TheLikeliestThreeAreTheNextInRank) {
+  VertexRing ring;
+  ASSERT_TRUE(ring.gather(disc(5), kCentre, covered(5, {})));
+  ring.find_runs();
+  ring.score(2, initial_parameters().fan);
+  auto all = ranked(ring);
+  ASSERT_EQ(all.size(), 5u);
+  all.resize(8, VertexRing::kNone);
+  for (std::size_t rank = 0; rank < 5; ++rank) {
+    const auto next = ring.likeliest(rank == 0 ? VertexRing::kAll : all[rank - 1]);
+    EXPECT_EQ(next, (std::array{all[rank], all[rank + 1], all[rank + 2]}));
+  }
 }
 
 TEST(VertexRing, LikesLongSpokesInsideWhenItsWeightsSaySo) {
@@ -123,9 +156,10 @@ TEST(VertexRing, LikesLongSpokesInsideWhenItsWeightsSaySo) {
   for (std::uint32_t k = 0; k < 6; ++k) star.triangles.push_back({0, 1 + k, 1 + (k + 1) % 6});
   const RefinableMesh mesh = *RefinableMesh::from_base(star);
   VertexRing ring;
-  ASSERT_TRUE(ring.gather(mesh, kCentre));
-  ring.find_runs(covered(6, {}));
-  EXPECT_EQ(ring.rank(mesh, 2, {{127, 0, 0}})[0].first, 2u);  // faces 2 and 3, the spoke between
+  ASSERT_TRUE(ring.gather(mesh, kCentre, covered(6, {})));
+  ring.find_runs();
+  ring.score(2, {{127, 0, 0}});
+  EXPECT_EQ(VertexRing::first_face(ring.likeliest()[0]), 2u);  // faces 2 and 3, the spoke between
 }
 
 }  // namespace

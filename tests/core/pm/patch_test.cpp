@@ -28,15 +28,19 @@ LatticeMesh hexagon(std::int32_t radius, Vec3i centre, std::int32_t bump = 0) {
 Patch gather(const LatticeMesh& base, const SplitSite& site) {
   const RefinableMesh mesh = *RefinableMesh::from_base(base);
   EXPECT_TRUE(mesh.connectivity().check(site).ok());
+  Fan fan;
+  fan.walk(mesh.connectivity(), site);
   Patch patch;
-  patch.gather(mesh, site);
+  patch.gather(mesh, fan);
   return patch;
 }
 
 constexpr SplitSite kTwoFaces = {HalfEdgeId(0), 2, SplitKind::interior};
 
 std::vector<Vec3i> polygon(const Patch& patch) {
-  return {patch.polygon.begin(), patch.polygon.begin() + patch.faces + 1};
+  std::vector<Vec3i> points;
+  for (const Int4& point : patch.polygon()) points.push_back({point[0], point[1], point[2]});
+  return points;
 }
 
 TEST(Patch, HoldsTheFansOutlineAroundItsKeptVertexInEighths) {

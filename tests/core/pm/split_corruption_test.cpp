@@ -34,7 +34,7 @@ bool survives(const SplitBase& base, ByteView bytes, std::uint32_t splits) {
   return decoded;
 }
 
-// Dense and sparse batches in a few hundred bytes.
+// Batches that sweep, go on, and name their vertices, in a few hundred bytes.
 RandomChunks::Chunk small_chunk(const SplitBase& base) {
   RandomChunks chunks(base, 1);
   chunks.add_batch(std::min(30u, base.refinable().vertex_count()));
