@@ -10,7 +10,7 @@
 namespace pmesh {
 namespace {
 
-constexpr std::size_t kMostSamples = 4000;
+constexpr std::size_t kMostSamples = 1000;
 constexpr int kSteps = 3;
 
 // Logistic choices: each of one of a vertex's candidates.

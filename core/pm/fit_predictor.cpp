@@ -11,7 +11,7 @@
 namespace pmesh {
 namespace {
 
-constexpr std::size_t kMostSamples = 8000;
+constexpr std::size_t kMostSamples = 2000;
 constexpr int kPasses = 6;
 constexpr double kUnit = 32;               // weights are in 1/32
 constexpr double kDrawn = 5;               // the weights before count as much as this many samples
