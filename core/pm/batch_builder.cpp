@@ -54,7 +54,7 @@ std::optional<SplitSite> find_border_last(const HalfEdgeMesh& mesh,
 
 }  // namespace
 
-std::optional<SplitSite> find_fan(const HalfEdgeMesh& mesh, const HalfEdgeCollapse& collapse) {
+std::optional<SplitSite> find_site(const HalfEdgeMesh& mesh, const HalfEdgeCollapse& collapse) {
   if (!collapse.left.valid()) return find_border_first(mesh, collapse);
   if (!collapse.right.valid()) return find_border_last(mesh, collapse);
   return find_interior(mesh, collapse);
@@ -142,7 +142,7 @@ std::optional<BatchSplit> BatchBuilder::split_at(std::size_t index,
       (collapse.right.valid() && !renamed.right.valid())) {
     return {};
   }
-  const std::optional<SplitSite> site = find_fan(mesh.connectivity(), renamed);
+  const std::optional<SplitSite> site = find_site(mesh.connectivity(), renamed);
   if (!site) return {};
   BatchSplit entry{{*site, positions_[collapse.removed.value]}, renamed.kept};
   if (!log_.kept_before.empty()) {

@@ -31,7 +31,8 @@ class BatchBuilder {
 
   /// The longest run of the next splits that do not touch, in the order in which they are coded,
   /// against `mesh`, which has all splits before. Leaves `state` uncovered. Never empty while there
-  /// are splits left. (Applying some of them leaves the others as they are.)
+  /// are splits left. (Applying some of them leaves the others as they are.) If the batch is to be
+  /// a sweep, nothing is left of the last one.
   std::vector<BatchSplit> next(const RefinableMesh& mesh, BatchMesh& state);
 
   /// Tells it that those from `begin` on of next()'s batch were applied, in the order `order`:
@@ -63,6 +64,6 @@ class BatchBuilder {
 
 /// The site in `mesh` whose split undoes `collapse`, whose vertices stand in `mesh`; nothing if
 /// they do not bound a fan there.
-std::optional<SplitSite> find_fan(const HalfEdgeMesh& mesh, const HalfEdgeCollapse& collapse);
+std::optional<SplitSite> find_site(const HalfEdgeMesh& mesh, const HalfEdgeCollapse& collapse);
 
 }  // namespace pmesh

@@ -3,12 +3,13 @@
 // A batch is a set of splits that do not touch: each keeps another vertex, and no face is covered
 // by two of them. A split covers the faces of its fan; an ear, which has none, the face that it is
 // glued to. All are coded against the mesh as it was before the batch, in the order of its kept
-// vertices (see BatchOrder), and then applied dearest first.
+// vertices (see BatchOrder), and then applied, by and large the dearest first.
 //
 // Threads: the usual; no shared state.
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -69,8 +70,11 @@ class BatchMesh {
   void begin_sweep();
   /// What is left of the sweep that was begun last: batches may share one.
   std::span<const VertexId> rest_of_sweep() const { return std::span(sweep_).subspan(swept_); }
-  /// Takes off the first `count` of rest_of_sweep().
-  void swept(std::size_t count) { swept_ += count; }
+  /// Takes the first `count` off rest_of_sweep().
+  void take_off(std::size_t count) {
+    assert(count <= rest_of_sweep().size());
+    swept_ += count;
+  }
 
   /// Whether all faces that the split of a fan covers are free.
   bool is_free(const Fan& fan) const {
@@ -80,8 +84,8 @@ class BatchMesh {
   /// Covers them. Precondition: they are free.
   void cover(const RefinableMesh& mesh, const Fan& fan);
 
-  /// Applies a batch of at least one split to `mesh`, dearest splits first, those of equal cost in
-  /// their order, and uncovers all faces. Fails if a split is not possible.
+  /// Applies a batch to `mesh`, window by window of 4,096 splits, in each by falling cost / 2,
+  /// those of equal value in their order, and uncovers all faces. Fails if a split is not possible.
   Status apply(std::span<const BatchSplit> batch, RefinableMesh& mesh);
   /// The order in which apply() took the last batch.
   std::span<const std::uint32_t> order() const { return order_; }

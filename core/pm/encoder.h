@@ -28,8 +28,8 @@ struct EncodeInput {
 /// The whole file. Renames vertices: the base's come first, in the order Draco gives them, then
 /// the others in the order in which they arrive or are split off. In the first 4 KiB a
 /// chunk has about half the bytes before it, but at least 800, then as many as there are before it,
-/// and at most a tenth of all, but 8 KiB may and 256 KiB may not be exceeded for that; the last
-/// bound doubles until the index fits the prologue, and, beside it, a base of up to 8 KiB the first
+/// and at most a tenth of all, or 8 KiB if that is more, but never over 256 KiB; the last bound
+/// doubles until the index fits the prologue, and, beside it, a base of up to 8 KiB the first
 /// 16 KiB. The header's box is that of the full mesh; coarser
 /// ones may exceed it where the log relocates.
 ///

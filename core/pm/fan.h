@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 
@@ -33,6 +34,7 @@ class Fan {
   /// The interior fan of `kept` whose faces' half-edges that leave `kept`, ccw, are `half_edges`.
   /// Precondition: they are at most kMaxMovedFaces, at least one.
   void take(VertexId kept, std::span<const HalfEdgeId> half_edges) {
+    assert(!half_edges.empty());
     begin(SplitKind::interior, kept, static_cast<std::uint32_t>(half_edges.size()));
     for (std::uint32_t face = 0; face < faces_; ++face) half_edges_[face] = half_edges[face];
   }
@@ -49,6 +51,7 @@ class Fan {
 
  private:
   void begin(SplitKind kind, VertexId kept, std::uint32_t faces) {
+    assert(faces <= kMaxMovedFaces);
     kind_ = kind;
     kept_ = kept;
     faces_ = faces;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace pmesh {
 namespace {
@@ -67,24 +68,21 @@ std::uint32_t VertexRing::find_runs() {
 void VertexRing::measure_spokes() {
   const std::uint32_t spokes = border_ ? faces_ + 1 : faces_;
   const int shift = std::max(0, bit_length(reach_[0] | reach_[1] | reach_[2]) - kSpokeBits);
-  std::array<std::int32_t, kMost + 1> length;
   Int4 sum{};
   std::int32_t length_sum = 0;
   sums_[0] = sum;
   length_sums_[0] = 0;
   for (std::uint32_t i = 0; i < spokes; ++i) {
-    Int4& spoke = spokes_[i];
-    spoke = (spoke >> shift) * 8;
-    sums_[i + 1] = sum += spoke;
+    const Int4 spoke = (spokes_[i] >> shift) * 8;
     const Vec3l s = widen(spoke);
-    length[i] = static_cast<std::int32_t>(square_root(dot(s, s)));
-    length_sums_[i + 1] = length_sum += length[i];
+    sums_[i + 1] = sum += spoke;
+    length_sums_[i + 1] = length_sum += static_cast<std::int32_t>(square_root(dot(s, s)));
   }
   mean_length_ = std::max(1, length_sum / static_cast<std::int32_t>(spokes));
   if (border_) return;
   for (std::uint32_t i = 0; i < spokes; ++i) {
-    sums_[spokes + i + 1] = sum += spokes_[i];
-    length_sums_[spokes + i + 1] = length_sum += length[i];
+    sums_[spokes + i + 1] = sum + sums_[i + 1];
+    length_sums_[spokes + i + 1] = length_sum + length_sums_[i + 1];
   }
 }
 
@@ -112,6 +110,7 @@ std::array<std::int64_t, 3> VertexRing::terms(std::uint32_t first) const {
 }
 
 void VertexRing::score(std::uint32_t length, const FanWeights& weights) {
+  assert(length >= 1 && length <= kMost && runs_[length] != 0);
   measure_spokes();
   length_ = length;
   const std::array<std::int64_t, 3> unit = units();

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/pm/fixed_point.h"
 #include "core/pm/int4.h"
@@ -28,8 +29,8 @@ struct FanWeights {
 /// border vertex from the border.
 class VertexRing {
  public:
-  /// Looks which of its faces `covered` has as free, too. False if `v` has more than
-  /// kMaxRankedFaces faces.
+  /// Looks which of its faces are free, too: `covered` has a 0 for those, a 1 for others, by face.
+  /// False, and nothing else may be asked, if `v` has more than kMaxRankedFaces faces.
   bool gather(const RefinableMesh& mesh, VertexId v, const std::vector<std::uint8_t>& covered);
 
   std::uint32_t faces() const { return faces_; }
@@ -47,8 +48,8 @@ class VertexRing {
   /// length.
   std::uint32_t find_runs();
 
-  /// Scores the runs of `length` free faces: the higher, the likelier. Precondition: find_runs()
-  /// found one.
+  /// Scores the runs of `length` free faces: the higher, the likelier. What is below is about
+  /// these. Precondition: find_runs() found one.
   void score(std::uint32_t length, const FanWeights& weights);
 
   /// A run and its score in one number: the likelier one has the larger; ties go to the run that

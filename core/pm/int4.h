@@ -1,5 +1,7 @@
-// Four 32-bit integers at once: a point's coordinates and one more. Compilers make vector
-// instructions of them where there are such, WebAssembly's included.
+// Four 32-bit integers at once: a point's coordinates and a 0. Compilers make vector instructions
+// of them where there are such, WebAssembly's included.
+//
+// Threads: plain values; no shared state.
 #pragma once
 
 #include <cstdint>

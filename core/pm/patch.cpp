@@ -46,7 +46,7 @@ std::size_t Patch::fan_class() const {
 }
 
 Vec3l Patch::local(Vec3i point) const {
-  const Vec3l offset = widen(int4(point)) - widen(int4(kept));
+  const Vec3l offset = widen(int4(point) - int4(kept));
   return clamp_to(shift_right(8 * offset, shift), kLocalReach);
 }
 

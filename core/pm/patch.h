@@ -98,7 +98,7 @@ Prediction predict(const Patch& patch, const Predictor& predictor);
 Prediction predict_kept(const Patch& patch, const Predictor& predictor, Vec3i added);
 
 /// What the split at `patch` that adds `added` is about worth, in half octaves: the squared volume
-/// between old and new surface over its area. Splits of a batch are applied dearest first.
+/// between old and new surface over its area. A batch is applied by and large the dearest first.
 int split_cost(const Patch& patch, Vec3i added);
 
 }  // namespace pmesh

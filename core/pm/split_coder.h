@@ -36,7 +36,7 @@ class SplitCoder {
     batch_ = &batch;
     coder_.enter(SplitSection::batches);
     const std::uint32_t count = code_count(static_cast<std::uint32_t>(batch.size()));
-    if (count == 0 || count > most) return bad_input("a batch has more splits than its chunk");
+    if (count > most) return bad_input("a batch has more splits than its chunk");
     if constexpr (Coder::kDecodes) batch.clear();
     order = code_order(order);
     if (order != BatchOrder::rest_of_sweep) code_parameters(parameters);
@@ -109,7 +109,7 @@ class SplitCoder {
       if (!coder_.bit(mark_model(v), is_wanted(next, v))) continue;
       if (Status coded = code_split(v, next++); !coded) return coded;
       if (next < count) continue;
-      state_.swept(place + 1);
+      state_.take_off(place + 1);
       return {};
     }
     return bad_input("a batch has more splits than the mesh has vertices to split");
@@ -129,7 +129,7 @@ class SplitCoder {
       connectivity.prefetch(v);
       state_.prefetch(v);
     }
-    if (sweep.size() >= kLargeMesh) walk_on();
+    if (mesh_.vertex_count() >= kLargeMesh) walk_on();
     if (place + kWalks < sweep.size()) {
       const VertexId v = sweep[place + kWalks];
       const HalfEdgeId first = connectivity.outgoing(v);

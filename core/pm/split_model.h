@@ -41,7 +41,7 @@ struct SplitModel {
   // Marks: border or not, valence, free faces.
   std::array<std::array<std::array<AdaptiveBit, kFree>, kValences>, 2> mark;
   std::array<AdaptiveBit, 32> gap_length;  // from one named vertex to the next
-  AdaptiveBit goes_on, sweeps;             // in the sweep? does it begin one?
+  AdaptiveBit goes_on, sweeps;             // with the last sweep? if not, is it a new sweep?
 
   // Cut neighbours.
   std::array<AdaptiveBit, kValences> interior;  // of a border vertex's split; by valence

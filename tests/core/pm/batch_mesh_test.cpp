@@ -92,6 +92,14 @@ TEST(BatchMesh, CoversTheFanOrTheFaceUnderAnEar) {
   }
 }
 
+TEST(BatchMesh, UncoversOneFaceOfMany) {
+  const RefinableMesh mesh = grid();
+  BatchMesh state(mesh);
+  state.cover(mesh, fan_of({HalfEdgeId(0), 1, SplitKind::interior}, mesh));
+  state.uncover(mesh);
+  expect_counts(state, mesh);
+}
+
 TEST(BatchMesh, UncoversAll) {
   const RefinableMesh mesh = grid();
   BatchMesh state(mesh);
@@ -228,7 +236,7 @@ TEST(BatchMesh, ASweepGoesOnOverTheVerticesThatThereWereWhenItBegan) {
   BatchMesh state(mesh);
   EXPECT_TRUE(state.rest_of_sweep().empty());
   state.begin_sweep();
-  state.swept(4);
+  state.take_off(4);
   split_at(VertexId(3), state, mesh);
   ASSERT_TRUE(mesh.append(triangle().snapshot()).ok());
   state.grow(mesh);

@@ -123,10 +123,43 @@ TEST(VertexRing, RanksByScoreAndTiesByPlace) {
   const auto ties = ranked(ring);
   ASSERT_EQ(ties.size(), 8u);
   for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(VertexRing::first_face(ties[i]), i);
+}
+
+TEST(VertexRing, ScoresTheSameAgain) {
+  const RefinableMesh mesh = disc(7);
+  VertexRing ring;
+  ASSERT_TRUE(ring.gather(mesh, kCentre, covered(7, {2})));
+  ring.find_runs();
   ring.score(2, initial_parameters().fan);
-  const auto all = ranked(ring);
-  ASSERT_EQ(all.size(), 8u);
-  for (std::size_t i = 0; i + 1 < all.size(); ++i) EXPECT_GE(ring.lead(all[i], all[i + 1], 1), 0);
+  const auto first = ranked(ring);
+  const auto unit = ring.score_unit();
+  for (const std::uint32_t length : {1u, 3u, 2u}) ring.score(length, initial_parameters().fan);
+  EXPECT_EQ(ranked(ring), first);
+  EXPECT_EQ(ring.score_unit(), unit);
+}
+
+// Spokes of 800, 1600, 800 and 2400 along the axes, in eighths: M = 1400. The run of the faces 0
+// and 1 has I = 1600, C = 1600 and E = (0, 1600); that of the faces 1 and 2 I = 800, C = 4000 and
+// E = (-800, -800).
+TEST(VertexRing, ScoresByTheThreeLengths) {
+  LatticeMesh cross{{{500, 500, 0}, {600, 500, 0}, {500, 700, 0}, {400, 500, 0}, {500, 200, 0}},
+                    {}};
+  for (std::uint32_t k = 0; k < 4; ++k) cross.triangles.push_back({0, 1 + k, 1 + (k + 1) % 4});
+  const RefinableMesh mesh = *RefinableMesh::from_base(cross);
+  VertexRing ring;
+  ASSERT_TRUE(ring.gather(mesh, kCentre, covered(4, {})));
+  ring.find_runs();
+  ring.score(2, {{1, 1, 1}});
+  EXPECT_EQ(ring.score_unit(), 2 * 1 * 4 * 1400);
+  EXPECT_EQ(ring.terms(0), (std::array<std::int64_t, 3>{8 * 1600, 4 * 1600, 2 * 1600}));
+  EXPECT_EQ(ring.terms(1), (std::array<std::int64_t, 3>{8 * 800, 4 * 4000, 2 * 1131}));
+  const auto score = [&](std::uint32_t first) {
+    const auto of = ring.terms(first);
+    return of[0] + of[1] + of[2];
+  };
+  for (const auto candidate : ring.candidates()) {
+    EXPECT_EQ(candidate >> 6, score(VertexRing::first_face(candidate)));
+  }
 }
 
 TEST(VertexRing, TheLikeliestThreeAreTheNextInRank) {
