@@ -32,8 +32,9 @@ void BatchMesh::cover(const RefinableMesh& mesh, const Fan& fan) {
     const FaceId f = HalfEdgeMesh::face(h);
     covered_[f.value] = 1;
     covered_faces_.push_back(f);
-    for (const VertexId v : corners.subspan(3 * std::size_t{f.value}, 3))
+    for (const VertexId v : corners.subspan(3 * std::size_t{f.value}, 3)) {
       ++counts_[v.value].covered;
+    }
   }
 }
 
