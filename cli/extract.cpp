@@ -9,7 +9,7 @@
 #include "cli/exit_codes.h"
 #include "cli/verb.h"
 #include "cli/wish_options.h"
-#include "client/apply_wish.h"
+#include "protocol/apply_wish.h"
 #include "client/verified_prefix.h"
 #include "core/io/export.h"
 #include "core/pm/pm_file.h"

@@ -4,7 +4,7 @@
 
 #include <sys/stat.h>
 
-#include "client/apply_wish.h"
+#include "protocol/apply_wish.h"
 #include "core/files/atomic_file.h"
 #include "core/files/read_file.h"
 #include "core/io/export.h"

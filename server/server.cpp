@@ -14,13 +14,13 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/messages.h"
-#include "server/http_answer.h"
-#include "server/http_session.h"
-#include "server/listener.h"
-#include "server/mesh_store.h"
-#include "server/refusal_session.h"
-#include "server/session.h"
-#include "server/tcp_session.h"
+#include "server/http/http_answer.h"
+#include "server/http/http_session.h"
+#include "server/net/listener.h"
+#include "server/store/mesh_store.h"
+#include "server/net/refusal_session.h"
+#include "server/net/session.h"
+#include "server/frames/tcp_session.h"
 
 namespace pmesh {
 

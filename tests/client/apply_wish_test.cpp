@@ -1,4 +1,4 @@
-#include "client/apply_wish.h"
+#include "protocol/apply_wish.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "client/apply_wish.h"
+#include "protocol/apply_wish.h"
 #include "core/decimate/decimate.h"
 #include "core/io/export.h"
 #include "core/mesh/half_edge_mesh.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "client/apply_wish.h"
+#include "protocol/apply_wish.h"
 #include "core/io/export.h"
 #include "core/pm/digest.h"
 #include "tests/client/sample.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "server/http_answer.h"
+#include "server/http/http_answer.h"
 #include "tests/fixtures/temporary_directory.h"
 #include "tests/server/sample_file.h"
 

@@ -1,4 +1,4 @@
-#include "server/listener.h"
+#include "server/net/listener.h"
 
 #include <new>
 #include <thread>
@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "protocol/messages.h"
-#include "server/refusal_session.h"
-#include "server/tcp_session.h"
+#include "server/net/refusal_session.h"
+#include "server/frames/tcp_session.h"
 #include "tests/server/descriptor_limit.h"
 #include "tests/server/running_server.h"
 #include "tests/server/sample_file.h"

@@ -1,4 +1,4 @@
-#include "server/mesh_file.h"
+#include "server/store/mesh_file.h"
 
 #include "core/pm/digest.h"
 

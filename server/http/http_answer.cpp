@@ -1,4 +1,4 @@
-#include "server/http_answer.h"
+#include "server/http/http_answer.h"
 
 #include <variant>
 

@@ -9,7 +9,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "core/base/result.h"
-#include "server/session.h"
+#include "server/net/session.h"
 
 namespace pmesh {
 

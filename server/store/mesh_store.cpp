@@ -1,4 +1,4 @@
-#include "server/mesh_store.h"
+#include "server/store/mesh_store.h"
 
 #include <algorithm>
 #include <filesystem>

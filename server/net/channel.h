@@ -11,8 +11,8 @@
 
 #include "core/base/bytes.h"
 #include "protocol/byte_range.h"
-#include "server/deadline.h"
-#include "server/mesh_file.h"
+#include "server/net/deadline.h"
+#include "server/store/mesh_file.h"
 #include "server/options.h"
 
 namespace pmesh {

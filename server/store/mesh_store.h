@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "server/mesh_file.h"
+#include "server/store/mesh_file.h"
 
 namespace pmesh {
 

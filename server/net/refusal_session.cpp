@@ -1,4 +1,4 @@
-#include "server/refusal_session.h"
+#include "server/net/refusal_session.h"
 
 namespace pmesh {
 

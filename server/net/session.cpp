@@ -1,4 +1,4 @@
-#include "server/session.h"
+#include "server/net/session.h"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "protocol/byte_range.h"
-#include "server/header_fields.h"
-#include "server/mesh_store.h"
+#include "server/http/header_fields.h"
+#include "server/store/mesh_store.h"
 
 namespace pmesh {
 

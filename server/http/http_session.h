@@ -1,5 +1,5 @@
 // An HTTP/1.1 connection: requests are parsed by Beast, one at a time, and each is answered exactly
-// once by what server/http_answer.h says.
+// once by what server/http/http_answer.h says.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
 
-#include "server/http_answer.h"
-#include "server/session.h"
+#include "server/http/http_answer.h"
+#include "server/net/session.h"
 
 namespace pmesh {
 

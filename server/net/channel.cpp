@@ -1,4 +1,4 @@
-#include "server/channel.h"
+#include "server/net/channel.h"
 
 #include <algorithm>
 #include <array>

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "protocol/messages.h"
-#include "server/session.h"
-#include "server/signal.h"
+#include "server/net/session.h"
+#include "server/net/signal.h"
 
 namespace pmesh {
 

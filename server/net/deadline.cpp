@@ -1,4 +1,4 @@
-#include "server/deadline.h"
+#include "server/net/deadline.h"
 
 namespace pmesh {
 

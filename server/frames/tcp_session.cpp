@@ -1,4 +1,4 @@
-#include "server/tcp_session.h"
+#include "server/frames/tcp_session.h"
 
 #include <algorithm>
 #include <array>

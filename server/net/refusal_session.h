@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "server/session.h"
+#include "server/net/session.h"
 
 namespace pmesh {
 

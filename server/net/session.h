@@ -11,8 +11,8 @@
 
 #include <boost/asio/awaitable.hpp>
 
-#include "server/channel.h"
-#include "server/mesh_store.h"
+#include "server/net/channel.h"
+#include "server/store/mesh_store.h"
 #include "server/options.h"
 
 namespace pmesh {
