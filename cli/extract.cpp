@@ -9,10 +9,10 @@
 #include "cli/exit_codes.h"
 #include "cli/verb.h"
 #include "cli/wish_options.h"
-#include "protocol/apply_wish.h"
 #include "client/verified_prefix.h"
 #include "core/io/export.h"
 #include "core/pm/pm_file.h"
+#include "protocol/apply_wish.h"
 #include "protocol/lod_request.h"
 
 namespace pmesh::cli {
@@ -25,9 +25,9 @@ struct ExtractOptions {
 };
 
 int run_extract(const ExtractOptions& options) {
-  const std::optional<MeshFormat> format = mesh_format_of(options.output);
-  if (format != MeshFormat::ply && format != MeshFormat::obj) {
-    return report("extract", {ErrorCode::usage, options.output + ": expected .ply or .obj"});
+  if (!export_format_of(options.output)) {
+    return report("extract", {ErrorCode::usage,
+                              options.output + ": expected " + std::string(kExportExtensions)});
   }
   if (Status distinct = check_distinct(options.file, options.output); !distinct) {
     return report("extract", distinct.error());
@@ -59,7 +59,8 @@ void add_extract(CLI::App& app, int& exit_status) {
   CLI::App* verb = app.add_subcommand("extract", "Write one level of detail of a PM file");
   verb->add_option("FILE", options->file, "PM file, whole or partial")->required();
   options->wish.add_to(*verb);
-  verb->add_option("-o,--output", options->output, "Mesh file to write: .ply or .obj")->required();
+  verb->add_option("-o,--output", options->output, "Mesh file to write: .ply, .obj, .glb or .drc")
+      ->required();
   verb->callback([options, &exit_status] { exit_status = run_extract(*options); });
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -16,6 +17,7 @@
 #include "cli/verb.h"
 #include "cli/wish_options.h"
 #include "client/fetch_to_file.h"
+#include "core/files/read_file.h"
 
 namespace pmesh::cli {
 namespace {
@@ -24,6 +26,10 @@ struct FetchArguments {
   std::string url;
   std::string output;
   WishOptions wish;
+  std::string token;
+  std::string token_file;
+  std::vector<std::string> headers;
+  std::string ca_file;
   bool json = false;
   bool force = false;
   bool quiet = false;
@@ -115,6 +121,30 @@ void print_note(const FetchArguments& arguments, const FetchReport& report) {
               static_cast<unsigned long long>(report.bytes_total));
 }
 
+// What shows the server who asks, and the client whom it asks.
+Result<TransportOptions> transport_options(const FetchArguments& arguments) {
+  TransportOptions options;
+  options.cancel = &interrupted;
+  options.ca_file = arguments.ca_file;
+  std::string token = arguments.token;
+  if (!arguments.token_file.empty()) {
+    const Result<Bytes> file = read_file(arguments.token_file);
+    if (!file) return file.error();
+    token.assign(file->begin(), file->end());
+  }
+  if (!token.empty() || !arguments.token_file.empty()) {
+    const Result<std::string> parsed = parse_token(token);
+    if (!parsed) return parsed.error();
+    options.token = *parsed;
+  }
+  for (const std::string& header : arguments.headers) {
+    const Result<HttpField> field = parse_http_field(header);
+    if (!field) return field.error();
+    options.http_fields.push_back(*field);
+  }
+  return options;
+}
+
 Result<FetchReport> fetch(const FetchArguments& arguments, FetchDisplay& display) {
   const Result<MeshUrl> url = parse_mesh_url(arguments.url);
   if (!url) return url.error();
@@ -123,9 +153,9 @@ Result<FetchReport> fetch(const FetchArguments& arguments, FetchDisplay& display
       return distinct.error();
     }
   }
-  TransportOptions options;
-  options.cancel = &interrupted;
-  const std::unique_ptr<Transport> transport = make_transport(*url, options);
+  const Result<TransportOptions> options = transport_options(arguments);
+  if (!options) return options.error();
+  const std::unique_ptr<Transport> transport = make_transport(*url, *options);
   const FetchJob job{arguments.wish.wish(), arguments.output, arguments.force};
   return fetch_to_file(*transport, job, display.stream_options());
 }
@@ -147,12 +177,24 @@ void add_fetch(CLI::App& app, int& exit_status) {
   CLI::App* verb = app.add_subcommand("fetch", "Fetch any level of detail of a mesh");
   const auto arguments = std::make_shared<FetchArguments>();
   verb->add_option("url", arguments->url,
-                   "http://HOST:PORT/ID, http://HOST/FILE.pmesh, tcp://HOST:PORT/ID or a path")
+                   "http[s]://HOST:PORT/ID, ws[s]://HOST:PORT/ID, http[s]://HOST/FILE.pmesh, "
+                   "tcp[s]://HOST:PORT/ID or a path")
       ->required();
-  verb->add_option("-o,--output", arguments->output,
-                   "What to write: .ply, .obj, or .pmesh, which a later fetch continues")
+  verb->add_option(
+          "-o,--output", arguments->output,
+          "What to write: .ply, .obj, .glb, .drc, or .pmesh, which a later fetch continues")
       ->required();
   arguments->wish.add_to(*verb);
+  auto* const token = verb->add_option("--token", arguments->token,
+                                       "Bearer token to show the server (others on this machine "
+                                       "may see it in the list of processes)");
+  verb->add_option("--token-file", arguments->token_file, "File that holds the token")
+      ->excludes(token);
+  verb->add_option("--header", arguments->headers, "'Name: value' to send with every HTTP request")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--ca", arguments->ca_file,
+                   "PEM file of the certificate authorities to trust instead of the system's");
   verb->add_flag("--json", arguments->json, "Print one JSON object on stdout");
   verb->add_flag("--force", arguments->force, "Start a .pmesh over, whatever file is there");
   verb->add_flag("--quiet", arguments->quiet, "No progress bar and no summary");

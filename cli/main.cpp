@@ -24,6 +24,9 @@ int run(int argc, char** argv) {
   pmesh::cli::add_compare(app, exit_status);
   pmesh::cli::add_serve(app, exit_status);
   pmesh::cli::add_fetch(app, exit_status);
+  pmesh::cli::add_export(app, exit_status);
+  pmesh::cli::add_sign(app, exit_status);
+  pmesh::cli::add_health(app, exit_status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -13,5 +13,8 @@ void add_extract(CLI::App& app, int& exit_status);
 void add_compare(CLI::App& app, int& exit_status);
 void add_serve(CLI::App& app, int& exit_status);
 void add_fetch(CLI::App& app, int& exit_status);
+void add_export(CLI::App& app, int& exit_status);
+void add_sign(CLI::App& app, int& exit_status);
+void add_health(CLI::App& app, int& exit_status);
 
 }  // namespace pmesh::cli

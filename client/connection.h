@@ -1,6 +1,9 @@
-// A TCP connection with deadlines: every call returns within its timeout, and soon after the cancel
-// flag is set (but a host name's look-up, once begun, ends when the system ends it). The one file
-// of the client that knows Asio; blocking on the outside.
+// A TCP connection, with TLS if its endpoint says so, and with deadlines: every call returns within
+// its timeout, and soon after the cancel flag is set (but a host name's look-up, once begun, ends
+// when the system ends it). The one file of the client that knows Asio; blocking on the outside.
+//
+// With TLS the peer must show a certificate for the endpoint's host, signed by an authority that
+// the system trusts or, instead, by one in the file that the options name.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +22,8 @@ class Connection {
   ~Connection();
 
   /// Resolves the host and connects to the first of its addresses that answers; an earlier
-  /// connection is closed. Errors (all retryable but a cancel) name the endpoint.
+  /// connection is closed. Errors name the endpoint. Retryable but for a cancel, a certificate that
+  /// is not to be trusted, and a file of authorities that cannot be read (usage).
   TransportStatus connect(const Endpoint& endpoint);
   bool is_open() const;
   void close();

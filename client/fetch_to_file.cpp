@@ -4,10 +4,10 @@
 
 #include <sys/stat.h>
 
-#include "protocol/apply_wish.h"
 #include "core/files/atomic_file.h"
 #include "core/files/read_file.h"
 #include "core/io/export.h"
+#include "protocol/apply_wish.h"
 #include "protocol/mesh_id.h"
 
 namespace pmesh {
@@ -36,7 +36,11 @@ FetchReport report_of(const StreamingClient& client) {
 }
 
 Result<FetchReport> fetch_mesh(StreamingClient& client, const FetchJob& job) {
-  if (Status fetched = client.fetch(job.wish); !fetched) return fetched.error();
+  if (Status fetched = client.fetch(job.wish); !fetched) {
+    Error error = fetched.error();
+    if (client.remedy() == Remedy::start_over) error.message += "; run again to fetch the new one";
+    return error;
+  }
   const FileIndex& index = *client.prefix().index();
   const Result<AppliedWish> applied = apply_wish(job.wish, index, client.mesh());
   if (!applied) return applied.error();
@@ -143,9 +147,9 @@ class PrefixFetch {
 Result<FetchReport> fetch_to_file(Transport& transport, const FetchJob& job,
                                   const StreamOptions& options) {
   const bool to_prefix = job.output.ends_with(kMeshFileSuffix);
-  const std::optional<MeshFormat> format = mesh_format_of(job.output);
-  if (!to_prefix && format != MeshFormat::ply && format != MeshFormat::obj) {
-    return Error{ErrorCode::usage, job.output + ": expected a name in .ply, .obj or .pmesh"};
+  if (!to_prefix && !export_format_of(job.output)) {
+    return Error{ErrorCode::usage,
+                 job.output + ": expected a name in .pmesh, " + std::string(kExportExtensions)};
   }
   if (Status writable = check_writable(job.output); !writable) return writable.error();
   StreamingClient client(transport, options);

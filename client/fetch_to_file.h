@@ -1,5 +1,5 @@
-// One fetch from a transport into one file: a mesh (.ply, .obj), or a PM file (.pmesh) that may be
-// partial and that a later fetch continues.
+// One fetch from a transport into one file: a mesh (core/io/export.h), or a PM file (.pmesh) that
+// may be partial and that a later fetch continues.
 #pragma once
 
 #include <cstdint>

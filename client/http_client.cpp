@@ -1,10 +1,7 @@
 #include "client/http_client.h"
 
 #include <array>
-#include <charconv>
 #include <sstream>
-#include <string_view>
-#include <vector>
 
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -24,13 +21,16 @@ namespace {
 
 constexpr std::uint32_t kMaxHeadBytes = 64 * 1024;
 constexpr std::size_t kBlockBytes = 64 * 1024;
+// Received at a time before a response's head has been judged: its body may not be wanted.
+constexpr std::size_t kHeadBlockBytes = 4 * 1024;
 
-std::string request_text(const Endpoint& endpoint, const std::string& target,
-                         const std::optional<ByteSpan>& range) {
+std::string request_text(const Endpoint& endpoint, const std::vector<HttpField>& fields,
+                         const std::string& target, const std::optional<ByteSpan>& range) {
   http::request<http::empty_body> request{http::verb::get, target, 11};
   request.set(http::field::host, endpoint.text());
   request.set(http::field::user_agent, "pmesh");
   request.set(http::field::accept_encoding, "identity");
+  for (const HttpField& field : fields) request.set(field.name, field.value);
   if (range) {
     request.set(http::field::range,
                 "bytes=" + std::to_string(range->begin) + "-" + std::to_string(range->end - 1));
@@ -38,33 +38,6 @@ std::string request_text(const Endpoint& endpoint, const std::string& target,
   std::ostringstream text;
   text << request;
   return text.str();
-}
-
-std::optional<std::uint64_t> take_number(std::string_view& text) {
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc()) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return number;
-}
-
-bool take(std::string_view& text, std::string_view expected) {
-  if (!text.starts_with(expected)) return false;
-  text.remove_prefix(expected.size());
-  return true;
-}
-
-// "bytes 0-99/1234", "bytes 0-99/*" or, in a 416, "bytes */1234" (RFC 9110, section 14.4).
-void parse_content_range(std::string_view text, HttpResponse& response) {
-  if (!take(text, "bytes ")) return;
-  if (!take(text, "*")) {
-    const std::optional<std::uint64_t> first = take_number(text);
-    if (!first || !take(text, "-")) return;
-    const std::optional<std::uint64_t> last = take_number(text);
-    if (!last || *last < *first || *last == UINT64_MAX) return;
-    response.content_range = ByteSpan{*first, *last + 1};
-  }
-  if (take(text, "/")) response.total_bytes = take_number(text);
 }
 
 }  // namespace
@@ -92,6 +65,7 @@ class HttpClient::Exchange {
     if (const auto length = parser_.content_length()) response.content_length = *length;
     parse_content_range(head[http::field::content_range], response);
     response.location = head[http::field::location];
+    response.retry_after = parse_retry_after(head[http::field::retry_after]);
     const auto encoding = head[http::field::content_encoding];
     if (!encoding.empty() && encoding != "identity") {
       return failure("the host sends the file encoded (" + std::string(encoding) + ")", false);
@@ -130,7 +104,7 @@ class HttpClient::Exchange {
   }
 
   TransportStatus receive() {
-    const auto space = buffer_.prepare(kBlockBytes);
+    const auto space = buffer_.prepare(parser_.is_header_done() ? kBlockBytes : kHeadBlockBytes);
     std::size_t count = 0;
     TransportStatus failed = client_.connection_.read_some(
         {static_cast<std::uint8_t*>(space.data()), space.size()}, count);
@@ -153,7 +127,9 @@ class HttpClient::Exchange {
 };
 
 HttpClient::HttpClient(Endpoint endpoint, const TransportOptions& options)
-    : endpoint_(std::move(endpoint)), connection_(options) {}
+    : endpoint_(std::move(endpoint)),
+      fields_(with_token(options.token, options.http_fields)),
+      connection_(options) {}
 
 TransportStatus HttpClient::get(const std::string& target, const std::optional<ByteSpan>& range,
                                 const HeadHandler& on_head, const BodyHandler& on_body) {
@@ -163,7 +139,7 @@ TransportStatus HttpClient::get(const std::string& target, const std::optional<B
   }
   Exchange exchange(*this);
   HttpResponse response;
-  TransportStatus failed = exchange.send(request_text(endpoint_, target, range));
+  TransportStatus failed = exchange.send(request_text(endpoint_, fields_, target, range));
   if (!failed) failed = exchange.read_head(response);
   if (failed && failed->retryable && reused && !exchange.has_received()) {
     connection_.close();  // the host had closed the idle connection: a new one is no second try
@@ -175,17 +151,8 @@ TransportStatus HttpClient::get(const std::string& target, const std::optional<B
   return failed;
 }
 
-TransportStatus HttpClient::check_status(const HttpResponse& response,
-                                         const std::string& target) const {
-  const unsigned status = response.status;
-  if (status == 200 || status == 206) return std::nullopt;
-  const std::string answer = url_of(target) + ": HTTP status " + std::to_string(status);
-  if (status == 404 || status == 410) return final_error(runtime_error(answer + " (not found)"));
-  if (status >= 300 && status < 400 && !response.location.empty()) {
-    return final_error(runtime_error(answer + ": moved to " + response.location));
-  }
-  const bool retryable = status >= 500 || status == 408 || status == 429;
-  return TransportError{runtime_error(answer), retryable};
+std::string HttpClient::url_of(const std::string& target) const {
+  return (endpoint_.is_secure ? "https://" : "http://") + endpoint_.text() + target;
 }
 
 }  // namespace pmesh

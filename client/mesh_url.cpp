@@ -1,6 +1,7 @@
 #include "client/mesh_url.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "core/base/parse_number.h"
@@ -11,6 +12,7 @@ namespace pmesh {
 namespace {
 
 constexpr std::uint16_t kHttpPort = 80;
+constexpr std::uint16_t kHttpsPort = 443;
 
 struct UrlParts {
   Endpoint endpoint;
@@ -51,7 +53,7 @@ std::optional<Endpoint> parse_authority(std::string_view text) {
   return endpoint;
 }
 
-Result<UrlParts> parse_parts(std::string_view url, std::uint16_t default_port) {
+Result<UrlParts> parse_parts(std::string_view url, bool is_secure, std::uint16_t default_port) {
   const bool printable = std::ranges::all_of(url, [](char c) { return c > ' ' && c < 0x7F; });
   if (!printable) return bad_url(url, "a character that must be percent-encoded");
   std::string_view rest = url.substr(url.find("://") + 3);
@@ -61,32 +63,75 @@ Result<UrlParts> parse_parts(std::string_view url, std::uint16_t default_port) {
   if (!endpoint) return bad_url(url, "expected HOST or HOST:PORT after \"://\"");
   if (endpoint->port == 0) endpoint->port = default_port;
   if (endpoint->port == 0) return bad_url(url, "a port is needed, as in tcp://HOST:PORT/ID");
+  endpoint->is_secure = is_secure;
   return UrlParts{*endpoint, rest.substr(slash)};
 }
 
-Result<MeshUrl> parse_http(std::string_view url) {
-  const Result<UrlParts> parts = parse_parts(url, kHttpPort);
-  if (!parts) return parts.error();
-  const std::string_view target = parts->target;
-  const std::string_view path = target.substr(0, target.find('?'));
-  if (path.ends_with(".pmesh")) return MeshUrl(HttpFile{parts->endpoint, std::string(target)});
-  if (path.size() != target.size()) {
-    return bad_url(url, "say the level of detail by an option, not in the URL");
+bool has_wish(std::string_view query) {
+  constexpr std::array<std::string_view, 6> kKeys = {
+      "faces=", "vertices=", "ratio=", "error=", "bytes=", "chunks="};
+  for (std::size_t begin = 0; begin < query.size();) {
+    const std::size_t end = std::min(query.find('&', begin), query.size());
+    const std::string_view parameter = query.substr(begin, end - begin);
+    if (std::ranges::any_of(kKeys, [&](auto key) { return parameter.starts_with(key); })) {
+      return true;
+    }
+    begin = end + 1;
   }
-  const std::size_t slash = path.rfind('/');
-  const std::string_view id = slash == std::string_view::npos ? "" : path.substr(slash + 1);
-  if (!is_mesh_id(id)) return bad_url(url, "expected a mesh's id, or a path ending in .pmesh");
-  return MeshUrl(HttpMesh{parts->endpoint, std::string(path.substr(0, slash)), std::string(id)});
+  return false;
 }
 
-Result<MeshUrl> parse_tcp(std::string_view url) {
-  const Result<UrlParts> parts = parse_parts(url, 0);
-  if (!parts) return parts.error();
-  const std::string_view target = parts->target;
-  const std::string_view id = target.starts_with('/') ? target.substr(1) : "";
-  if (!is_mesh_id(id)) return bad_url(url, "expected a mesh's id, as in tcp://HOST:PORT/ID");
-  return MeshUrl(TcpMesh{parts->endpoint, std::string(id)});
+Result<HttpMesh> parse_mesh(std::string_view url, const UrlParts& parts) {
+  const std::size_t question = std::min(parts.target.find('?'), parts.target.size());
+  const std::string_view path = parts.target.substr(0, question);
+  const std::string_view query = parts.target.substr(std::min(question + 1, parts.target.size()));
+  if (has_wish(query)) return bad_url(url, "say the level of detail by an option, not in the URL");
+  const std::size_t slash = path.rfind('/');
+  const std::string_view id = slash == std::string_view::npos ? "" : path.substr(slash + 1);
+  if (!is_mesh_id(id))
+    return bad_url(url, "expected a mesh's id, or (over HTTP) a path ending in .pmesh");
+  return HttpMesh{parts.endpoint, std::string(path.substr(0, slash)), std::string(id),
+                  std::string(query)};
 }
+
+Result<MeshUrl> parse_http(std::string_view url, bool is_secure) {
+  const Result<UrlParts> parts = parse_parts(url, is_secure, is_secure ? kHttpsPort : kHttpPort);
+  if (!parts) return parts.error();
+  const std::string_view path = parts->target.substr(0, parts->target.find('?'));
+  if (path.ends_with(kMeshFileSuffix)) {
+    return MeshUrl(HttpFile{parts->endpoint, std::string(parts->target)});
+  }
+  const Result<HttpMesh> mesh = parse_mesh(url, *parts);
+  return mesh ? Result<MeshUrl>(*mesh) : mesh.error();
+}
+
+Result<MeshUrl> parse_web_socket(std::string_view url, bool is_secure) {
+  const Result<UrlParts> parts = parse_parts(url, is_secure, is_secure ? kHttpsPort : kHttpPort);
+  if (!parts) return parts.error();
+  const Result<HttpMesh> mesh = parse_mesh(url, *parts);
+  return mesh ? Result<MeshUrl>(WebSocketMesh{*mesh}) : mesh.error();
+}
+
+Result<MeshUrl> parse_tcp(std::string_view url, bool is_secure) {
+  const Result<UrlParts> parts = parse_parts(url, is_secure, 0);
+  if (!parts) return parts.error();
+  const Result<HttpMesh> mesh = parse_mesh(url, *parts);
+  if (!mesh) return mesh.error();
+  if (!mesh->prefix.empty()) return bad_url(url, "expected a mesh's id, as in tcp://HOST:PORT/ID");
+  return MeshUrl(TcpMesh{mesh->endpoint, mesh->id, mesh->query});
+}
+
+struct Scheme {
+  std::string_view text;
+  bool is_secure;
+  Result<MeshUrl> (*parse)(std::string_view url, bool is_secure);
+};
+
+constexpr Scheme kSchemes[] = {
+    {"http://", false, parse_http},     {"https://", true, parse_http},
+    {"ws://", false, parse_web_socket}, {"wss://", true, parse_web_socket},
+    {"tcp://", false, parse_tcp},       {"tcps://", true, parse_tcp},
+};
 
 }  // namespace
 
@@ -98,9 +143,10 @@ std::string Endpoint::text() const {
 Result<MeshUrl> parse_mesh_url(std::string_view text) {
   if (text.empty()) return Error{ErrorCode::usage, "the URL is empty"};
   if (text.find("://") == std::string_view::npos) return MeshUrl(LocalFile{std::string(text)});
-  if (begins_in_any_case(text, "http://")) return parse_http(text);
-  if (begins_in_any_case(text, "tcp://")) return parse_tcp(text);
-  return bad_url(text, "expected http://, tcp:// or a path");
+  for (const auto& [scheme, is_secure, parse] : kSchemes) {
+    if (begins_in_any_case(text, scheme)) return parse(text, is_secure);
+  }
+  return bad_url(text, "expected http[s]://, ws[s]://, tcp[s]:// or a path");
 }
 
 }  // namespace pmesh

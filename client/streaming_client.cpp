@@ -19,11 +19,10 @@ Error gave_up(Error error, int failures) {
   return error;
 }
 
-// Appends the first `count` bytes of the remote file to `start`.
+// Appends the first `count` bytes of the remote file, and what comes along with them, to `start`.
 TransportStatus read_start(Transport& transport, std::size_t count, Bytes& start) {
   return transport.read({0, count, {}}, [&](std::uint64_t, ByteView bytes) {
-    const ByteView taken = bytes.first(std::min(count - start.size(), bytes.size()));
-    start.insert(start.end(), taken.begin(), taken.end());
+    start.insert(start.end(), bytes.begin(), bytes.end());
     return start.size() < count;
   });
 }
@@ -47,22 +46,22 @@ Status StreamingClient::fetch(const LodRequest& wish) {
   remedy_ = Remedy::none;
   if (Status sensible = check_wish(wish); !sensible) return bad_bytes(sensible.error()).error;
   int failures = 0;
-  std::chrono::milliseconds delay = options_.retry.first_delay;
+  Backoff backoff(options_.retry);
   for (;;) {
+    remedy_ = Remedy::none;
     const std::uint64_t held = prefix_.size();
     const TransportStatus failed = attempt(wish);
     if (!failed) return {};
     is_open_ = false;
     if (prefix_.size() > held) {
       failures = 0;
-      delay = options_.retry.first_delay;
+      backoff.reset();
     }
     if (failed->retryable || is_cancelled()) remedy_ = Remedy::try_again;
     if (!failed->retryable) return failed->error;
     if (++failures >= options_.retry.max_failures) return gave_up(failed->error, failures);
     if (options_.on_retry) options_.on_retry(failed->error);
-    if (!wait(delay)) return runtime_error("interrupted");
-    delay = std::min(2 * delay, options_.retry.longest_delay);
+    if (!wait(backoff.next(failed->retry_after))) return runtime_error("interrupted");
   }
 }
 
@@ -97,17 +96,26 @@ TransportStatus StreamingClient::confirm_same_file() {
   const TransportStatus failed = read_start(transport_, kIdentityBytes, start);
   bytes_fetched_ += start.size();
   if (failed) return failed;
+  start.resize(std::min(start.size(), kIdentityBytes));
   if (std::ranges::equal(start, prefix_.verified().first(kIdentityBytes))) return std::nullopt;
   return bad_bytes(another_file("its header differs"));
 }
 
 TransportStatus StreamingClient::read(const LodRequest& wish) {
   failure_ = {};
-  const ReadRequest request{prefix_.size(), end_of(wish), wish};
+  is_section_bad_ = false;
+  const ReadRequest request{prefix_.size(), end_of(wish), wish, prefix_.index()};
   const TransportStatus failed = transport_.read(
       request, [&](std::uint64_t offset, ByteView bytes) { return accept(wish, offset, bytes); });
-  if (!failure_) return bad_bytes(failure_.error());
-  return failed;
+  return failure_.ok() ? failed : judge(failure_.error());
+}
+
+// A section may have been pieced together from several answers, or damaged on one way only: the
+// first time that it does not match its digest says little.
+TransportError StreamingClient::judge(const Error& error) {
+  if (!is_section_bad_ || second_try_ == prefix_.size()) return bad_bytes(error);
+  second_try_ = prefix_.size();
+  return retryable_error(bad_bytes(error).error);
 }
 
 bool StreamingClient::accept(const LodRequest& wish, std::uint64_t offset, ByteView bytes) {
@@ -132,6 +140,7 @@ Status StreamingClient::take(ByteView bytes) {
   }
   const ByteView whole = prefix_.verified().subspan(static_cast<std::size_t>(decoder_.fed_bytes()));
   if (Status decoded = decoder_.feed(whole); !decoded) return decoded.error();
+  is_section_bad_ = !appended && appended.error().code == ErrorCode::verification;
   return appended;
 }
 

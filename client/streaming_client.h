@@ -8,22 +8,16 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "client/backoff.h"
 #include "client/transport.h"
 #include "client/verified_prefix.h"
 #include "core/pm/stream_decoder.h"
 #include "protocol/lod_request.h"
 
 namespace pmesh {
-
-struct RetryPolicy {
-  /// Retryable failures in a row, without one new byte between them, after which to give up.
-  int max_failures = 5;
-  /// The wait before the first retry; doubled for every next one in a row.
-  std::chrono::milliseconds first_delay{200};
-  std::chrono::milliseconds longest_delay{5000};
-};
 
 struct StreamProgress {
   std::uint64_t bytes_held = 0;
@@ -56,12 +50,13 @@ class StreamingClient {
   /// none. Precondition: nothing has been fetched.
   Status resume_from(ByteView prefix);
 
-  /// Fetches what `wish` needs and is not held yet; may be called again with a finer wish. Fails
-  /// with the transport's last error; as VerifiedPrefix::append() does, and with `verification` too
-  /// if a section that matches its digest cannot be decoded; with `usage`, as soon as the index is
-  /// known, if resolve() refuses the wish; with `runtime` if the remote file is another than the
-  /// one begun. What came before the failure stays. If the remote holds only a part of the file,
-  /// success means that part.
+  /// Fetches what `wish` needs and is not held yet; may be called again with a finer wish. The
+  /// bytes of an unfinished section are kept over a cut; a section that does not match its digest
+  /// is fetched once more. Fails with the transport's last error; as VerifiedPrefix::append() does,
+  /// and with `verification` too if a section that matches its digest cannot be decoded; with
+  /// `usage`, as soon as the index is known, if resolve() refuses the wish; with `runtime` if the
+  /// remote file is another than the one begun. What came before the failure stays. If the remote
+  /// holds only a part of the file, success means that part.
   Status fetch(const LodRequest& wish);
 
   /// Of the last fetch, if that has failed.
@@ -85,6 +80,7 @@ class StreamingClient {
   Status check_hash(const ContentHash& remote);
   Error another_file(const std::string& how);
   TransportError bad_bytes(const Error& error) const;
+  TransportError judge(const Error& error);
   std::optional<std::uint64_t> end_of(const LodRequest& wish) const;
   bool has_all_of(const LodRequest& wish) const;
   void report_progress(const LodRequest& wish) const;
@@ -98,7 +94,9 @@ class StreamingClient {
   StreamDecoder decoder_;
   std::uint64_t bytes_fetched_ = 0;
   Remedy remedy_ = Remedy::none;
-  Status failure_;  // of accept()
+  Status failure_;                           // of accept()
+  bool is_section_bad_ = false;              // failure_ is a digest that does not match
+  std::optional<std::uint64_t> second_try_;  // where the last section begins that had one
 };
 
 }  // namespace pmesh

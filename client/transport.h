@@ -1,5 +1,5 @@
-// The one interface through which a PM file's bytes come: over HTTP, over TCP or from a disk. A
-// transport knows addresses and wires, but nothing of meshes.
+// The one interface through which a PM file's bytes come: over HTTP, WebSocket or TCP, or from a
+// disk. A transport knows addresses and wires, but nothing of meshes.
 //
 // Threads: a transport belongs to one thread at a time; only CancelFlag may be set from another
 // thread or a signal handler.
@@ -11,7 +11,10 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "client/http_field.h"
 #include "client/mesh_url.h"
 #include "core/base/bytes.h"
 #include "core/base/result.h"
@@ -28,6 +31,11 @@ struct TransportOptions {
   /// How long a peer may stay silent, or take no bytes, before the connection counts as lost.
   std::chrono::milliseconds idle_timeout{30'000};
   const CancelFlag* cancel = nullptr;  ///< May be null; must outlive the transport.
+  std::string token{};  ///< Shown to the server, as parse_token() gives it; may be empty.
+  /// Sent with every HTTP and WebSocket request.
+  std::vector<HttpField> http_fields{};
+  /// For TLS: a PEM file of the authorities to trust instead of the system's; may be empty.
+  std::string ca_file{};
 };
 
 /// Why a transport failed. Retryable: lost or refused connection, timeout, HTTP 408, 429 or 5xx.
@@ -35,9 +43,15 @@ struct TransportOptions {
 struct TransportError {
   Error error;
   bool retryable = false;
+  /// After how long the peer asks to come again, if it does.
+  std::optional<std::chrono::milliseconds> retry_after{};
+  /// The host is there, but does not offer this wire: another may do.
+  bool wants_other_wire = false;
 };
-inline TransportError final_error(Error error) { return {std::move(error), false}; }
-inline TransportError retryable_error(Error error) { return {std::move(error), true}; }
+inline TransportError final_error(Error error) { return {.error = std::move(error)}; }
+inline TransportError retryable_error(Error error) {
+  return {.error = std::move(error), .retryable = true};
+}
 
 /// Nothing is success.
 using TransportStatus = std::optional<TransportError>;
@@ -58,13 +72,15 @@ struct ReadRequest {
   /// gives what covers `wish`, if its peer can resolve that, or else the first 16 KiB.
   std::optional<std::uint64_t> end;
   LodRequest wish;
+  /// Of the file, once it is known: for hosts that give out chunks but no ranges. May be null.
+  const FileIndex* index = nullptr;
 };
 
 class Transport {
  public:
   virtual ~Transport() = default;
 
-  /// Connects and asks for the file. Called again after a failure, it starts anew.
+  /// Connects and asks for the file. Called again after a failure, it connects anew.
   virtual TransportStatus open() = 0;
 
   /// Gives bytes to `sink` in order, without gaps, until the request is met, the sink says false
@@ -74,7 +90,7 @@ class Transport {
   virtual TransportStatus read(const ReadRequest& request, const ByteSink& sink) = 0;
 
   /// What is known so far: after open(), more after read().
-  const RemoteFile& remote() const { return remote_; }
+  virtual const RemoteFile& remote() const { return remote_; }
 
  protected:
   RemoteFile remote_;

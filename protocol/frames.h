@@ -37,6 +37,7 @@ enum class FrameType : std::uint8_t {
   ping = 10,
   pong = 11,
   failure = 12,
+  authorise = 13,
 };
 
 /// The type may be none of the enumerators: what to do with such a frame is its receiver's choice.
@@ -76,6 +77,12 @@ class FrameParser {
   Frame& frame() { return frame_; }
   /// What is wrong. Precondition: feed() answered bad.
   const std::string& error() const { return error_; }
+
+  /// The frame under way, with what has come of its payload; null before its header is whole, and
+  /// once bad.
+  const Frame* unfinished() const {
+    return header_bytes_ == kFrameHeaderBytes && error_.empty() ? &frame_ : nullptr;
+  }
 
   /// True if the bytes so far end inside a frame: a connection closed here was cut.
   bool inside_frame() const { return header_bytes_ > 0; }

@@ -188,6 +188,10 @@ Result<Failure> parse_failure(ByteView payload) {
   return failure;
 }
 
+Bytes encode_authorise(std::string_view token) {
+  return encode_frame(FrameType::authorise, kConnectionStream, as_bytes(token));
+}
+
 Bytes encode_empty(FrameType type, std::uint16_t stream) { return encode_frame(type, stream, {}); }
 
 }  // namespace pmesh

@@ -10,6 +10,7 @@
 //   data     u64 offset, bytes (up to the payload's end)
 //   done     u64 end, u64 faces, u64 vertices, u8 reached (0 or 1)
 //   failure  u16 code, text (up to the payload's end)
+//   authorise  a bearer token (up to the payload's end)
 //   pause, resume, cancel, ping, pong: an empty payload
 //
 // Every encode_X gives a whole frame; every parse_X reads a frame's payload and fails (bad_input)
@@ -43,7 +44,7 @@ struct Hello {
 
 /// Client: opens a mesh on a stream, of any hash or of the given one only.
 struct Open {
-  std::string id;
+  std::string id;  ///< Perhaps with "?" and the query of a signed URL behind it.
   std::optional<ContentHash> hash;
   friend bool operator==(const Open&, const Open&) = default;
 };
@@ -96,6 +97,7 @@ enum class FailureCode : std::uint16_t {
   not_open = 9,             ///< Want: no mesh is open on the stream.
   bad_wish = 10,            ///< Want: the wish or the offset makes no sense for this mesh.
   cancelled = 11,           ///< Want: it was cancelled or replaced.
+  not_allowed = 12,         ///< Open: no token or signature allows the mesh.
 };
 
 struct Failure {
@@ -112,6 +114,8 @@ Bytes encode_want(std::uint16_t stream, const Want& want);
 Bytes encode_data(std::uint16_t stream, const Data& data);
 Bytes encode_done(std::uint16_t stream, const Done& done);
 Bytes encode_failure(std::uint16_t stream, const Failure& failure);
+/// Precondition: at most kMinFrameLimit bytes.
+Bytes encode_authorise(std::string_view token);
 /// Pause, resume, cancel, ping and pong.
 Bytes encode_empty(FrameType type, std::uint16_t stream);
 

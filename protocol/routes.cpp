@@ -1,5 +1,6 @@
 #include "protocol/routes.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/base/parse_number.h"
@@ -71,12 +72,52 @@ Result<Route> file_route(const std::string& id, const ContentHash& hash, std::st
   return Route(MeshFileRoute{id, hash, *wish});
 }
 
+/// Takes "draco=0" or "draco=1" out of a query of "&"-separated members; what is left is the wish.
+Result<bool> take_draco(std::string& query) {
+  constexpr std::string_view kKey = "draco=";
+  std::size_t begin = 0;
+  while (begin < query.size()) {
+    const std::size_t end = std::min(query.find('&', begin), query.size());
+    const std::string_view member = std::string_view(query).substr(begin, end - begin);
+    if (!member.starts_with(kKey)) {
+      begin = end + 1;
+      continue;
+    }
+    const std::string value(member.substr(kKey.size()));
+    if (value != "0" && value != "1") return usage_error("draco: expected 0 or 1");
+    const bool is_last = end == query.size();
+    query.erase(is_last && begin > 0 ? begin - 1 : begin,
+                member.size() + (is_last ? begin > 0 : 1));
+    return value == "1";
+  }
+  return false;
+}
+
+/// "lod.glb" and the like; nothing if `name` is none.
+std::optional<std::string_view> lod_ending(std::string_view name) {
+  constexpr std::string_view kStem = "lod.";
+  if (!name.starts_with(kStem) || !lod_format_of(name.substr(kStem.size()))) return {};
+  return name.substr(kStem.size());
+}
+
+Result<Route> lod_route(const std::string& id, std::string_view ending, std::string_view query) {
+  auto decoded = decoded_query(query);
+  if (!decoded) return usage_error("the query has a broken percent escape");
+  const auto draco = take_draco(*decoded);
+  if (!draco) return draco.error();
+  auto wish = parse_wish(*decoded);
+  if (!wish) return wish.error();
+  return Route(LodRoute{id, *lod_format_of(ending, *draco), *wish});
+}
+
 Result<Route> mesh_route(const std::vector<std::string>& segments, std::string_view query) {
   const std::string& id = segments.front();
   if (segments.size() == 1) return Route(MeshInfoRoute{id});
   if (segments.size() == 2) {
     const auto hash = file_hash(segments[1]);
     if (hash) return file_route(id, *hash, query);
+    if (const auto ending = lod_ending(segments[1])) return lod_route(id, *ending, query);
+    if (segments[1] == "stream") return Route(StreamRoute{id});
   }
   if (segments.size() == 4 && segments[2] == "c") {
     const auto hash = parse_hash(segments[1]);
@@ -99,8 +140,16 @@ Result<Route> parse_target(std::string_view target) {
   const auto segments = path_segments(path);
   if (!segments) return segments.error();
   const std::string& first = segments->front();
-  if (segments->size() == 1 && first == "catalog") return Route(CatalogRoute{});
-  if (segments->size() == 1 && first == "health") return Route(HealthRoute{});
+  if (segments->size() == 1) {
+    if (first.empty()) return Route(ViewerRoute{});
+    if (first == "catalog") return Route(CatalogRoute{});
+    if (first == "health") return Route(HealthRoute{});
+    if (first == "metrics") return Route(MetricsRoute{});
+    if (first == "openapi.json") return Route(OpenapiRoute{});
+  }
+  if (segments->size() == 2 && first == "view" && is_mesh_id((*segments)[1])) {
+    return Route(ViewerRoute{(*segments)[1]});
+  }
   if (!is_mesh_id(first)) return Route(UnknownRoute{});
   return mesh_route(*segments, query);
 }
@@ -113,7 +162,14 @@ std::string file_target(std::string_view id, const ContentHash& hash, const LodR
   return target;
 }
 
+std::string chunk_target(std::string_view id, const ContentHash& hash, std::uint64_t chunk) {
+  std::string target = "/";
+  target.append(id).append("/").append(to_hex(hash)).append("/c/").append(std::to_string(chunk));
+  return target;
+}
+
 std::optional<std::string> percent_decoded(std::string_view text) {
+  if (text.find('%') == std::string_view::npos) return std::string(text);
   std::string decoded;
   decoded.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {

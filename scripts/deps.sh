@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that pmesh needs: deps.sh [build] [test] [demo] [fuzz] [run]
-# [peers]; the first three by default; `run` is for a machine that gets a built pmesh, `peers` for
-# bench/peers, bench/papers and bench/bytes. `test` also installs, into the source tree, the npm
-# package that tests/decoder-js needs. Silent when nothing is missing.
+# [bench] [peers]; the first three by default; `run` is for a machine that gets a built pmesh,
+# `bench` for bench/serve, `peers` for bench/peers, bench/papers and bench/bytes. `test` also
+# installs, into the source tree, the npm packages that some tests need. Silent when nothing is
+# missing. (Debian starts some of the daemons that tests/scale needs when it installs them.)
 set -euo pipefail
 
 build=(cmake g++ ninja-build libboost1.81-dev libcli11-dev libdraco-dev libgtest-dev libspdlog-dev
   libssl-dev nlohmann-json3-dev)
-test=(clang-format clang-tidy curl jq libmeshoptimizer-dev nodejs npm zstd)
+test=(clang-format clang-tidy curl haproxy jq libmeshoptimizer-dev nginx-light nodejs npm
+  openssl python3 systemd varnish zstd)
 demo=(ca-certificates curl jq nodejs npm)
 fuzz=(clang libclang-rt-14-dev)
 run=(libdraco7 libspdlog1.10 libssl3)
+bench=(iproute2 nginx-light openssl python3 slowhttptest strace wrk)
 peers=(draco libgl1-mesa-dri libmeshoptimizer-dev libopenmesh-dev meshlab python3 xauth xvfb)
 
 fail() {
@@ -60,8 +63,9 @@ for group in "$@"; do
     demo) wanted+=("${demo[@]}") ;;
     fuzz) wanted+=("${fuzz[@]}") ;;
     run) wanted+=("${run[@]}") ;;
+    bench) wanted+=("${bench[@]}") ;;
     peers) wanted+=("${peers[@]}") ;;
-    *) fail "unknown group '$group'; usage: deps.sh [build] [test] [demo] [fuzz] [run] [peers]" ;;
+    *) fail "unknown group '$group'; usage: deps.sh [build] [test] [demo] [fuzz] [run] [bench] [peers]" ;;
   esac
 done
 
@@ -73,5 +77,9 @@ if [ ${#missing[@]} -gt 0 ]; then
   as_root apt-get -qq -y --no-install-recommends install "${missing[@]}" >/dev/null
 fi
 case " $* " in
-  *" test "*) install_npm_packages "$(dirname "$0")/../tests/decoder-js" ;;
+  *" test "*)
+    for folder in decoder-js gltf openapi; do
+      install_npm_packages "$(dirname "$0")/../tests/$folder"
+    done
+    ;;
 esac

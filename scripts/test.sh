@@ -48,12 +48,19 @@ run_tests() {
     --no-tests=error --output-on-failure --progress
 }
 
+# run_one_test PRESET NAME
+run_one_test() {
+  ctest --test-dir "build/$1" -R "^$2\$" --no-tests=error --output-on-failure
+}
+
 stage "packages" scripts/deps.sh build test
 stage "meshes" unpack_meshes
 stage "format and lint" scripts/lint.sh
 stage "release build" build release all
 stage "asan build: fast tests" build asan tests_fast
 stage "asan run: fast tests" run_tests asan fast
+stage "asan build: soak" build asan pmesh soak make_sample
+stage "asan run: soak" run_one_test asan soak
 stage "tsan build: services tests" build tsan tests_services
 stage "tsan run: services tests" run_tests tsan services
 

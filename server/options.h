@@ -44,7 +44,7 @@ struct LodLimits {
 /// Who may read the meshes. Both empty: everybody.
 struct AccessOptions {
   std::vector<std::string> tokens;  ///< `Authorization: Bearer` gives access to everything.
-  std::string url_key;  ///< Signs URLs (protocol/signed_url.h), each for one mesh and some time.
+  std::string url_key;  ///< Signs URLs (server/access/signed_query.h) for one mesh and some time.
 };
 
 /// PEM files; TLS is served if both are set.
@@ -59,10 +59,11 @@ struct ServerOptions {
   std::string tcp;                      ///< The same for the frame protocol.
   std::string metrics;                  ///< The same for /metrics alone; empty: served with HTTP.
   unsigned threads = 0;                 ///< 0: as many as the machine has cores.
-  std::size_t max_connections = 10'000;
+  std::size_t max_connections = 12'000;
   std::size_t max_connections_per_address = 256;  ///< An IPv6 address counts by its /64; 0: any.
   /// CIDR blocks of proxies, whose X-Forwarded-For and PROXY headers are believed.
   std::vector<std::string> trusted_proxies;
+  bool access_log = false;  ///< A line in the log for every HTTP answer and every want.
   /// How long transfers may go on after drain().
   std::chrono::milliseconds drain_grace{30'000};
   SessionLimits limits;

@@ -1,26 +1,20 @@
 #include "server/server.h"
 
-#include <algorithm>
 #include <csignal>
-#include <thread>
 #include <vector>
 
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/strand.hpp>
 #include <boost/system/system_error.hpp>
 #include <spdlog/spdlog.h>
 
-#include "protocol/messages.h"
-#include "server/http/http_answer.h"
-#include "server/http/http_session.h"
-#include "server/net/listener.h"
-#include "server/store/mesh_store.h"
-#include "server/net/refusal_session.h"
-#include "server/net/session.h"
 #include "server/frames/tcp_session.h"
+#include "server/http/http_session.h"
+#include "server/metrics/prometheus.h"
+#include "server/net/listener.h"
+#include "server/net/reactors.h"
+#include "server/net/refusal_session.h"
+#include "server/services.h"
 
 namespace pmesh {
 
@@ -29,89 +23,127 @@ using asio::ip::tcp;
 
 namespace {
 
-unsigned thread_count(unsigned asked) {
-  return asked > 0 ? asked : std::max(1u, std::thread::hardware_concurrency());
-}
-
-/// What an HTTP client beyond the limit is told. It is made once, so it has no Date.
-std::string http_refusal() {
-  const std::string text = "too many connections\n";
-  return "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 1\r\nCache-Control: no-store\r\n"
-         "Content-Type: text/plain; charset=utf-8\r\nContent-Length: " +
-         std::to_string(text.size()) + "\r\nConnection: close\r\n\r\n" + text;
-}
-
-std::string tcp_refusal() {
-  Bytes frames = encode_hello({.max_frame = kMinFrameLimit});
-  const Bytes busy = encode_failure(kConnectionStream, {FailureCode::busy, "too many connections"});
-  frames.insert(frames.end(), busy.begin(), busy.end());
-  return {frames.begin(), frames.end()};
-}
+/// Of those who read the metrics on a port of their own.
+constexpr std::size_t kMostMetricsConnections = 64;
 
 }  // namespace
 
+/// What a server is made of, in the order in which it must stand: sessions live in the reactors and
+/// use what comes before them; workers hand what they make to the reactors.
 class Server::Impl {
  public:
-  explicit Impl(const ServerOptions& options)
+  Impl(const ServerOptions& options, std::unique_ptr<MeshStore> store, TrustedProxies proxies,
+       PolicyPtr policy)
       : options_(options),
-        context_(static_cast<int>(thread_count(options.threads))),
-        control_(asio::make_strand(context_)),
-        signals_(control_),
-        grace_(control_),
-        registry_(options.max_connections) {}
-
-  Status open_store() {
-    auto store = MeshStore::open(options_.directory);
-    if (!store) return store.error();
-    store_ = std::move(*store);
-    return {};
-  }
+        store_(std::move(store)),
+        addresses_(options.max_connections_per_address),
+        proxies_(std::move(proxies)),
+        policy_(std::move(policy)),
+        reactors_(options.threads),
+        lod_(options.lod),
+        services_(services(options.metrics.empty(), false)),
+        metrics_services_(services(true, true)),
+        signals_(reactors_.first()),
+        grace_(reactors_.first()),
+        registry_(options.max_connections),
+        metrics_registry_(kMostMetricsConnections) {}
 
   template <class SessionType>
-  Result<std::string> listen(const std::string& address, const std::string& refusal) {
-    const auto make_session = [this](tcp::socket socket) -> std::shared_ptr<Session> {
-      return std::make_shared<SessionType>(std::move(socket), options_.limits, *store_);
-    };
-    const auto make_refusal = [this, refusal](tcp::socket socket) -> std::shared_ptr<Session> {
-      return std::make_shared<RefusalSession>(std::move(socket), options_.limits, refusal);
-    };
-    auto listener = Listener::bind(context_, address, registry_, make_session, make_refusal);
-    if (!listener) return listener.error();
-    listeners_.push_back(*listener);
-    return (*listener)->address();
+  Result<std::string> listen(const std::string& address, WireProtocol protocol) {
+    return listen<SessionType>(address, protocol, services_, registry_);
+  }
+  Result<std::string> listen_for_metrics() {
+    return listen<HttpSession>(options_.metrics, WireProtocol::http, metrics_services_,
+                               metrics_registry_);
   }
 
-  void handle_signals() {
+  void handle_signals(Reload reload) {
+    reload_ = std::move(reload);
     signals_.add(SIGTERM);
     signals_.add(SIGINT);
+    if (reload_) signals_.add(SIGHUP);
     wait_for_signal();
   }
 
   void run() {
     for (const auto& listener : listeners_) listener->start();
-    std::vector<std::thread> threads;
-    for (unsigned i = 1; i < thread_count(options_.threads); ++i) {
-      threads.emplace_back([this] { context_.run(); });
-    }
-    context_.run();
-    for (std::thread& thread : threads) thread.join();
+    reactors_.run();
   }
 
   void drain() {
-    asio::post(control_, [this] { begin_drain(); });
+    asio::post(reactors_.first(), [this] { begin_drain(); });
   }
 
-  void stop() { context_.stop(); }
+  void stop() { reactors_.stop(); }
+
+  Status reload(const ServerOptions& options) {
+    const auto policy = make_policy(options);
+    metrics_.reloads.add(policy ? ReloadResult::done : ReloadResult::failed);
+    if (!policy) return policy.error();
+    policy_.set(*policy);
+    return {};
+  }
 
  private:
+  Services services(bool with_metrics, bool only_operation) {
+    std::function<std::string()> metrics_text;
+    if (with_metrics) metrics_text = [this] { return this->metrics_text(); };
+    return {*store_,       lod_,    metrics_,           addresses_,
+            proxies_,      policy_, options_.lod.faces, std::move(metrics_text),
+            only_operation};
+  }
+
+  std::string metrics_text() {
+    return prometheus_text(metrics_, lod_.statistics(), store_->list().size());
+  }
+
+  template <class SessionType>
+  Result<std::string> listen(const std::string& address, WireProtocol protocol, Services& services,
+                             SessionRegistry& registry) {
+    const auto make_session = [&services](Socket& socket) -> std::shared_ptr<Session> {
+      boost::system::error_code ignored;
+      const asio::ip::address peer = unmapped(socket.remote_endpoint(ignored).address());
+      std::optional<AddressCounts::Slot> slot = AddressCounts::Slot();
+      if (!services.proxies.contains(peer)) slot = services.addresses.enter(peer);
+      if (slot) {
+        return std::make_shared<SessionType>(std::move(socket), services, std::move(*slot));
+      }
+      services.metrics.limits.add(LimitName::connections_per_address);
+      return nullptr;
+    };
+    const auto make_refusal = [&services, protocol](Socket& socket) {
+      return std::make_shared<RefusalSession>(std::move(socket), services, protocol,
+                                              SessionType::refusal_text());
+    };
+    auto listener = Listener::bind(reactors_, address, registry, make_session, make_refusal);
+    if (!listener) return listener.error();
+    listeners_.push_back(*listener);
+    return (*listener)->address();
+  }
+
   void wait_for_signal() {
     signals_.async_wait([this](const boost::system::error_code& error, int number) {
       if (error) return;
-      spdlog::info("signal {}: {}", number, draining_ ? "stopping at once" : "draining");
-      if (draining_) return stop();
-      begin_drain();
+      if (number == SIGHUP) {
+        reload_now();
+      } else {
+        spdlog::info("signal {}: {}", number, draining_ ? "stopping at once" : "draining");
+        if (draining_) return stop();
+        begin_drain();
+      }
       wait_for_signal();
     });
+  }
+
+  void reload_now() {
+    const auto options = reload_();
+    if (!options) metrics_.reloads.add(ReloadResult::failed);
+    const Status reloaded = options ? reload(*options) : Status(options.error());
+    if (reloaded) {
+      spdlog::info("reloaded");
+    } else {
+      spdlog::error("not reloaded: {}", reloaded.error().message);
+    }
   }
 
   void begin_drain() {
@@ -124,45 +156,73 @@ class Server::Impl {
       spdlog::warn("{} connections outlived the grace period and are cut", registry_.count());
       registry_.cut();
     });
-    registry_.drain([this] { asio::post(control_, [this] { stop(); }); });
+    metrics_registry_.drain([] {});
+    registry_.drain([this] { asio::post(reactors_.first(), [this] { stop(); }); });
   }
 
   const ServerOptions options_;
-  std::unique_ptr<MeshStore> store_;
-  asio::io_context context_;
-  asio::strand<asio::io_context::executor_type> control_;  // guards what follows
+  const std::unique_ptr<MeshStore> store_;
+  Metrics metrics_;
+  AddressCounts addresses_;
+  const TrustedProxies proxies_;
+  CurrentPolicy policy_;
+  Reactors reactors_;
+  LodService lod_;
+  Services services_;
+  Services metrics_services_;
+
+  // From here on used on the first reactor's thread alone, once it runs.
   asio::signal_set signals_;
-  asio::steady_timer grace_;
+  Timer grace_;
+  Reload reload_;
   bool draining_ = false;
   SessionRegistry registry_;
+  SessionRegistry metrics_registry_;
   std::vector<std::shared_ptr<Listener>> listeners_;
 };
 
-Server::Server(const ServerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) try {
   std::signal(SIGPIPE, SIG_IGN);
-  std::unique_ptr<Server> server(new Server(options));
-  if (Status opened = server->impl_->open_store(); !opened) return opened.error();
-  if (!options.http.empty()) {
-    auto address = server->impl_->listen<HttpSession>(options.http, http_refusal());
-    if (!address) return address.error();
-    server->http_address_ = *address;
-  }
-  if (!options.tcp.empty()) {
-    auto address = server->impl_->listen<TcpSession>(options.tcp, tcp_refusal());
-    if (!address) return address.error();
-    server->tcp_address_ = *address;
-  }
+  auto store = MeshStore::open(options.directory);
+  if (!store) return store.error();
+  auto proxies = TrustedProxies::parse(options.trusted_proxies);
+  if (!proxies) return proxies.error();
+  auto policy = make_policy(options);
+  if (!policy) return policy.error();
+  std::unique_ptr<Server> server(
+      new Server(std::make_unique<Impl>(options, std::move(*store), *proxies, *policy)));
+  if (Status listening = server->listen(options); !listening) return listening.error();
   return server;
 } catch (const boost::system::system_error& error) {  // Asio lacks descriptors of its own
   return Error{ErrorCode::out_of_resources, std::string("cannot start: ") + error.what()};
 }
 
-void Server::handle_signals() { impl_->handle_signals(); }
+Status Server::listen(const ServerOptions& options) {
+  if (!options.http.empty()) {
+    auto address = impl_->listen<HttpSession>(options.http, WireProtocol::http);
+    if (!address) return address.error();
+    http_address_ = *address;
+  }
+  if (!options.tcp.empty()) {
+    auto address = impl_->listen<TcpSession>(options.tcp, WireProtocol::frames);
+    if (!address) return address.error();
+    tcp_address_ = *address;
+  }
+  if (!options.metrics.empty()) {
+    auto address = impl_->listen_for_metrics();
+    if (!address) return address.error();
+    metrics_address_ = *address;
+  }
+  return {};
+}
+
+void Server::handle_signals(Reload reload) { impl_->handle_signals(std::move(reload)); }
 void Server::run() { impl_->run(); }
 void Server::drain() { impl_->drain(); }
 void Server::stop() { impl_->stop(); }
+Status Server::reload(const ServerOptions& options) { return impl_->reload(options); }
 
 }  // namespace pmesh

@@ -1,30 +1,19 @@
 #include "core/io/export.h"
 
-#include <algorithm>
 #include <bit>
-#include <cassert>
 #include <charconv>
-#include <cmath>
-#include <limits>
-#include <new>
-#include <optional>
-#include <string_view>
+#include <utility>
 
 #include "core/files/atomic_file.h"
+#include "core/files/out_of_memory.h"
+#include "core/io/draco_export.h"
+#include "core/io/extension.h"
+#include "core/io/glb_export.h"
 
 namespace pmesh {
 namespace {
 
 constexpr std::size_t kPlyFaceBytes = 13;  // A length of one byte and three indices.
-
-double largest_coordinate(const Lattice& lattice) {
-  const double extent = lattice.step * (std::ldexp(1.0, lattice.bits) - 1);
-  double largest = 0;
-  for (const double low : {lattice.origin.x, lattice.origin.y, lattice.origin.z}) {
-    largest = std::max({largest, std::abs(low), std::abs(low + extent)});
-  }
-  return largest;
-}
 
 void append_text(Bytes& out, std::string_view text) {
   const ByteView bytes = as_bytes(text);
@@ -95,37 +84,42 @@ Bytes format_obj(const LatticeMesh& mesh, const Lattice& lattice, bool single) {
 
 }  // namespace
 
-bool fits_single_precision(const Lattice& lattice) {
-  const double largest = largest_coordinate(lattice);
-  if (!(largest <= static_cast<double>(std::numeric_limits<float>::max()))) return false;
-  if (largest == 0) return true;
-  // Rounding is off by at most half the gap between neighbouring floats of that size.
-  const int exponent = std::max(std::ilogb(largest), std::numeric_limits<float>::min_exponent - 1);
-  const double gap = std::ldexp(1.0, exponent + 1 - std::numeric_limits<float>::digits);
-  return gap / 2 <= lattice.step / 8;
+std::optional<ExportFormat> export_format_of(std::string_view path) {
+  constexpr std::pair<std::string_view, ExportFormat> kExtensions[] = {{".ply", ExportFormat::ply},
+                                                                       {".obj", ExportFormat::obj},
+                                                                       {".glb", ExportFormat::glb},
+                                                                       {".drc", ExportFormat::drc}};
+  return format_by_extension(path, kExtensions);
 }
 
-Vec3<float> ExportedPositions::to_single(Vec3d p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
-
-Bytes format_mesh(MeshFormat format, const LatticeMesh& mesh, const Lattice& lattice) {
-  assert(format == MeshFormat::ply || format == MeshFormat::obj);
-  const bool single = fits_single_precision(lattice);
-  return format == MeshFormat::ply ? format_ply(mesh, lattice, single)
-                                   : format_obj(mesh, lattice, single);
+Result<Bytes> format_mesh(ExportFormat format, const LatticeMesh& mesh, const Lattice& lattice) {
+  switch (format) {
+    case ExportFormat::ply:
+      return format_ply(mesh, lattice, fits_single_precision(lattice));
+    case ExportFormat::obj:
+      return format_obj(mesh, lattice, fits_single_precision(lattice));
+    case ExportFormat::glb:
+      return format_glb(mesh, lattice, GlbGeometry::accessors);
+    case ExportFormat::glb_draco:
+      return format_glb(mesh, lattice, GlbGeometry::draco);
+    case ExportFormat::drc:
+      break;
+  }
+  Result<DracoExport> coded = export_draco(mesh, lattice, DracoNumbers::doubles_if_needed);
+  if (!coded) return coded.error();
+  return std::move(coded->bytes);
 }
 
 Status export_mesh(const std::string& path, const LatticeMesh& mesh, const Lattice& lattice) {
-  const std::optional<MeshFormat> format = mesh_format_of(path);
-  if (format != MeshFormat::ply && format != MeshFormat::obj) {
-    return Error{ErrorCode::usage, path + ": meshes are written as .ply or .obj"};
+  const std::optional<ExportFormat> format = export_format_of(path);
+  if (!format) {
+    return Error{ErrorCode::usage,
+                 path + ": meshes are written as " + std::string(kExportExtensions)};
   }
-  try {
-    return write_file(path, format_mesh(*format, mesh, lattice), Overwrite::yes);
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::out_of_resources, path + ": not enough memory to write the mesh"};
-  }
+  const Result<Bytes> bytes =
+      catching_out_of_memory([&] { return format_mesh(*format, mesh, lattice); });
+  if (!bytes) return prefixed(path, bytes.error());
+  return write_file(path, *bytes, Overwrite::yes);
 }
 
 }  // namespace pmesh

@@ -1,45 +1,34 @@
-// Mesh files out: PLY (binary little-endian) and OBJ.
+// Mesh files out: PLY (binary little-endian), OBJ, GLB (core/io/glb_export.h) and Draco
+// (core/io/draco_export.h).
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/base/bytes.h"
 #include "core/base/result.h"
-#include "core/base/vec3.h"
-#include "core/io/import.h"
+#include "core/io/single_precision.h"
 #include "core/mesh/indexed_mesh.h"
 #include "core/mesh/lattice.h"
 
 namespace pmesh {
 
-/// Whether single precision keeps every position of `lattice` to within 1/8 of a step. Exports
-/// store floats if so, else doubles: a pure function of the lattice, the same for every LOD.
-bool fits_single_precision(const Lattice& lattice);
+enum class ExportFormat : std::uint8_t { ply, obj, glb, glb_draco, drc };
 
-/// The positions of lattice points as exports write them: rounded to floats if those suffice.
-class ExportedPositions {
- public:
-  explicit ExportedPositions(const Lattice& lattice)
-      : lattice_(lattice), single_(fits_single_precision(lattice)) {}
+/// The format that a file name's extension names (any case): .ply, .obj, .glb or .drc.
+std::optional<ExportFormat> export_format_of(std::string_view path);
 
-  Vec3d operator()(Vec3i point) const {
-    const Vec3d p = lattice_.position(point);
-    if (!single_) return p;
-    const Vec3<float> rounded = to_single(p);
-    return {rounded.x, rounded.y, rounded.z};
-  }
-
- private:
-  // Not inline: g++ 12 takes a conversion to floats and back, of several doubles at once, for none.
-  static Vec3<float> to_single(Vec3d p);
-
-  Lattice lattice_;
-  bool single_;
-};
+/// The extensions, for messages.
+inline constexpr std::string_view kExportExtensions = ".ply, .obj, .glb or .drc";
 
 /// `mesh` as a file's bytes: the same bytes for the same mesh, lattice and format. Triangles and
-/// vertices keep their order. Precondition: format is ply or obj.
-Bytes format_mesh(MeshFormat format, const LatticeMesh& mesh, const Lattice& lattice);
+/// vertices keep their order, but for Draco's. Positions are floats if those suffice
+/// (fits_single_precision); else doubles, or in a GLB floats that its node puts in place. Fails
+/// (runtime, out_of_resources) as the two headers above say; PLY and OBJ never do. Precondition:
+/// `mesh` has a face. Throws std::bad_alloc for want of memory.
+Result<Bytes> format_mesh(ExportFormat format, const LatticeMesh& mesh, const Lattice& lattice);
 
 /// Writes format_mesh() to `path` (format by its extension) through core/files/atomic_file.h: on
 /// any error the old file, if there was one, is still there.

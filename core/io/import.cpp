@@ -1,11 +1,11 @@
 #include "core/io/import.h"
 
-#include <cctype>
 #include <new>
 #include <utility>
 
 #include "core/base/ids.h"
 #include "core/files/read_file.h"
+#include "core/io/extension.h"
 #include "core/io/parsers.h"
 
 namespace pmesh {
@@ -45,13 +45,7 @@ std::optional<MeshFormat> mesh_format_of(std::string_view path) {
                                                                      {".obj", MeshFormat::obj},
                                                                      {".stl", MeshFormat::stl},
                                                                      {".off", MeshFormat::off}};
-  if (path.size() < 4) return std::nullopt;
-  std::string extension(path.substr(path.size() - 4));
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const auto& [name, format] : kExtensions) {
-    if (extension == name) return format;
-  }
-  return std::nullopt;
+  return format_by_extension(path, kExtensions);
 }
 
 Result<ImportedMesh> parse_mesh(MeshFormat format, ByteView bytes) {

@@ -7,43 +7,22 @@
 
 #include <draco/attributes/point_attribute.h>
 #include <draco/compression/decode.h>
-#include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
+
+#include "core/draco/encode.h"
 
 namespace pmesh {
 namespace {
 
 constexpr int kBestCompression = 0;  // Draco's "speed"
 
-std::unique_ptr<draco::Mesh> to_draco(const std::vector<Vec3i>& positions,
-                                      const std::vector<Triangle>& triangles) {
-  auto mesh = std::make_unique<draco::Mesh>();
-  const auto vertex_count = static_cast<std::uint32_t>(positions.size());
-  mesh->set_num_points(vertex_count);
-  mesh->SetNumFaces(triangles.size());
-  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
-    const auto [a, b, c] = triangles[f];
-    mesh->SetFace(draco::FaceIndex(f),
-                  {draco::PointIndex(a), draco::PointIndex(b), draco::PointIndex(c)});
-  }
-  draco::GeometryAttribute attribute;
-  attribute.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_INT32, false,
-                 sizeof(Vec3i), 0);
-  const int id = mesh->AddAttribute(attribute, true, vertex_count);
-  for (draco::AttributeValueIndex v(0); v < vertex_count; ++v) {
-    mesh->attribute(id)->SetAttributeValue(v, &positions[v.value()]);
-  }
-  return mesh;
-}
-
-Result<Bytes> encode(const draco::Mesh& mesh, int method) {
-  draco::ExpertEncoder encoder(mesh);
+Result<Bytes> encode(const std::vector<Vec3i>& positions, const std::vector<Triangle>& triangles,
+                     int method) {
+  const auto mesh = make_draco_mesh(positions, triangles);
+  draco::ExpertEncoder encoder(*mesh);
   encoder.SetSpeedOptions(kBestCompression, kBestCompression);
   encoder.SetEncodingMethod(method);
-  draco::EncoderBuffer buffer;
-  const draco::Status status = encoder.EncodeToBuffer(&buffer);
-  if (!status.ok()) return runtime_error("Draco: " + status.error_msg_string());
-  return Bytes(buffer.data(), buffer.data() + buffer.size());
+  return run_draco(encoder);
 }
 
 Result<std::unique_ptr<draco::Mesh>> decode(ByteView bytes) {
@@ -118,7 +97,7 @@ Result<LatticeMesh> decode_own(const Bytes& bytes) {
 Result<std::vector<std::uint32_t>> find_order(const LatticeMesh& base, int method) {
   std::vector<Vec3i> indices(base.positions.size());
   for (std::size_t v = 0; v < indices.size(); ++v) indices[v].x = static_cast<std::int32_t>(v);
-  const Result<Bytes> bytes = encode(*to_draco(indices, base.triangles), method);
+  const Result<Bytes> bytes = encode(indices, base.triangles, method);
   if (!bytes) return bytes.error();
   const Result<LatticeMesh> decoded = decode_own(*bytes);
   if (!decoded) return decoded.error();
@@ -135,7 +114,7 @@ Result<EncodedBase> encode_with(const LatticeMesh& base, int method) {
   Result<std::vector<std::uint32_t>> order = find_order(base, method);
   if (!order) return order.error();
   coded.decoded_vertex = std::move(*order);
-  Result<Bytes> bytes = encode(*to_draco(base.positions, base.triangles), method);
+  Result<Bytes> bytes = encode(base.positions, base.triangles, method);
   if (!bytes) return bytes.error();
   coded.bytes = std::move(*bytes);
   Result<LatticeMesh> decoded = decode_own(coded.bytes);

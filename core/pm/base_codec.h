@@ -1,5 +1,4 @@
-// The base mesh, or a chunk's new components, as Draco bytes and back: the one room that knows
-// Draco. Clients use it too.
+// The base mesh, or a chunk's new components, as Draco bytes and back. Clients use it too.
 #pragma once
 
 #include <cstdint>

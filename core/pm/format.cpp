@@ -326,6 +326,7 @@ Status check_rows(const FileIndex& index, const DecodeLimits& limits) {
 std::string to_hex(const ContentHash& hash) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string text;
+  text.reserve(2 * hash.size());
   for (const std::uint8_t byte : hash) {
     text += kDigits[byte >> 4];
     text += kDigits[byte & 15];

@@ -1,71 +1,56 @@
-// A connection of the TCP protocol (docs/protocol.md, section 3): one coroutine reads frames and
-// acts on them, another sends answers and the data of the want that stands. One stream can be open.
+// A TCP connection that carries frames (docs/protocol.md, section 3).
 #pragma once
 
-#include <cstdint>
-#include <deque>
+#include <array>
 #include <optional>
 #include <string>
 
-#include "protocol/messages.h"
+#include "server/frames/frame_conversation.h"
 #include "server/net/session.h"
-#include "server/net/signal.h"
 
 namespace pmesh {
 
-class TcpSession final : public Session {
+/// Frames one after another on a channel; data leave by sendfile(2).
+class ChannelFrameWire final : public FrameWire {
  public:
-  TcpSession(boost::asio::ip::tcp::socket socket, const SessionLimits& limits, MeshStore& store);
+  explicit ChannelFrameWire(Channel& channel) : channel_(channel) {}
 
- protected:
-  boost::asio::awaitable<void> run() override;
-  void on_drain() override;
+  Executor executor() override { return channel_.executor(); }
+  Awaitable<Arrival> next() override;
+  const Frame& frame() override { return parser_.frame(); }
+  bool inside_frame() const override { return parser_.inside_frame(); }
+  Awaitable<void> stop_reading() override;
+  Awaitable<bool> send(ByteView frame) override { return channel_.send({frame}); }
+  Awaitable<bool> send_data(ByteView head, const MeshFile& mesh, ByteSpan span) override {
+    return channel_.send({head, &mesh, span});
+  }
+  Awaitable<void> close_gently() override { return channel_.close_gently(); }
+  void reset() override { channel_.reset(); }
 
  private:
-  /// A want under way: the bytes [next, level.end) are still to be sent.
-  struct Transfer {
-    std::uint64_t next = 0;
-    Resolution level;
-    bool paused = false;
-  };
-  struct Stream {
-    std::uint16_t id = 0;
-    MeshPtr mesh;
-    std::optional<Transfer> transfer;
-  };
-
-  boost::asio::awaitable<void> read_frames();
-  boost::asio::awaitable<void> take_frames(ByteView bytes);
-  bool is_sending() const;
-  void take_frame(const Frame& frame);
-  void take_hello(const Frame& frame);
-  void take_open(const Frame& frame);
-  void open_mesh(std::uint16_t stream, const Open& open);
-  void take_want(const Frame& frame);
-  void take_control(const Frame& frame);
-  Stream* find_stream(std::uint16_t id);
-  void end_transfer(Stream& stream, std::string reason);
-
-  boost::asio::awaitable<bool> write_frames();
-  boost::asio::awaitable<bool> send_next_answer();
-  boost::asio::awaitable<bool> send_next_data();
-
-  void enqueue(Bytes frame);
-  void fail(std::uint16_t stream, FailureCode code, std::string text);
-  void end_with(FailureCode code, std::string text);
-
-  MeshStore& store_;
+  Channel& channel_;
   FrameParser parser_{kMinFrameLimit};  // nothing that a client says is longer
-  std::optional<Hello> peer_;           // set once its hello has come
-  std::optional<Stream> stream_;
+  std::array<char, 1024> buffer_;
+  ByteView unread_;  // of the buffer
+  bool interrupted_ = false;
+};
 
-  std::deque<Bytes> answers_;  // to be sent before any more data
-  std::size_t answer_bytes_ = 0;
-  Signal work_;          // the writer waits for answers, a transfer or the end
-  Signal room_;          // the reader waits for answers to have been sent
-  bool ending_ = false;  // say what is queued, then close
-  bool reading_ = true;  // the reader runs
-  bool writing_ = true;  // the writer runs
+class TcpSession final : public Session {
+ public:
+  TcpSession(Socket socket, Services& services, AddressCounts::Slot slot)
+      : Session(std::move(socket), services, WireProtocol::frames, std::move(slot)) {}
+
+  /// What a client is told that there is no room for.
+  static std::string refusal_text();
+
+ protected:
+  Awaitable<void> run() override;
+  void on_drain() override;
+  std::string refusal() const override { return refusal_text(); }
+
+ private:
+  ChannelFrameWire wire_{channel_};
+  std::optional<FrameConversation> conversation_;
 };
 
 }  // namespace pmesh

@@ -11,6 +11,7 @@ class HeaderFields {
  public:
   /// Precondition: neither holds a line end.
   void add(std::string_view name, std::string_view value) {
+    if (lines_.empty()) lines_.reserve(kUsualBytes);
     lines_.append(name).append(": ").append(value).append("\r\n");
   }
 
@@ -30,6 +31,8 @@ class HeaderFields {
   const std::string& lines() const { return lines_; }
 
  private:
+  static constexpr std::size_t kUsualBytes = 512;
+
   std::string lines_;
 };
 

@@ -1,18 +1,18 @@
 #include "server/http/http_session.h"
 
 #include <ctime>
-#include <iterator>
 
-#include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
+
+#include "server/log/structured_log.h"
 
 namespace pmesh {
 
 namespace asio = boost::asio;
-namespace http = boost::beast::http;
 
 namespace {
 
-constexpr std::size_t kReceiveBytes = 2048;
+using Clock = Deadline::Clock;
 
 /// Now, as the Date field has it; remade once a second on each thread.
 const std::string& http_date() {
@@ -43,120 +43,201 @@ std::string_view message_of(int status) {
   }
 }
 
+std::optional<LimitName> limit_of(int refusal) {
+  switch (refusal) {
+    case 408:
+      return LimitName::header_timeout;
+    case 414:
+      return LimitName::target_bytes;
+    case 431:
+      return LimitName::header_bytes;
+    default:
+      return {};
+  }
+}
+
 }  // namespace
 
-asio::awaitable<void> HttpSession::run() {
-  bool keep_alive = true;
-  while (keep_alive) {
+std::string HttpSession::refusal_text() {
+  const HttpAnswer answer = busy_answer(503, "too many connections");
+  return head_text(answer, http_date(), false) + answer.text;
+}
+
+Awaitable<void> HttpSession::run() {
+  bool goes_on = true;
+  while (goes_on) {
     const Arrival arrival = co_await next_request();
-    if (arrival.kind == Arrival::end) co_return;
-    HttpAnswer answer;
-    if (arrival.kind == Arrival::refusal) {
-      answer = error_answer(arrival.status, message_of(arrival.status));
-      keep_alive = false;
+    if (arrival.is_request) {
+      goes_on = co_await answer_request();
+    } else if (arrival.refusal != 0) {
+      goes_on = co_await answer_refusal(arrival.refusal);
     } else {
-      answer = answer_http(request(), store_);
-      keep_alive = parser_->get().keep_alive() && !draining();
-    }
-    const bool sent = co_await send(answer, keep_alive);
-    if (!sent) {
-      channel_.reset();
-      co_return;
+      goes_on = false;
     }
   }
-  co_await channel_.close_gently();
 }
 
 void HttpSession::on_drain() {
   if (idle_) channel_.interrupt_receive();
+  if (websocket_) websocket_->drain();
 }
 
-asio::awaitable<HttpSession::Arrival> HttpSession::next_request() {
-  parser_.emplace();
-  parser_->header_limit(static_cast<std::uint32_t>(limits().header_bytes));
-  idle_ = input_.empty();
-  if (idle_) {
-    if (draining()) co_return Arrival{};
-    const std::size_t count = co_await receive_more(Deadline::Clock::now() + limits().idle_timeout);
-    if (count == 0) co_return Arrival{};
+// ---- receiving
+
+Awaitable<HttpSession::Arrival> HttpSession::next_request() {
+  RequestParser::Step step = parser_.next();
+  idle_ = step == RequestParser::Step::more && parser_.empty();
+  if (idle_ && draining()) co_return Arrival{};
+  Clock::time_point by =
+      Clock::now() + (idle_ && !is_first_ ? limits().idle_timeout : limits().header_timeout);
+  is_first_ = false;
+  while (step == RequestParser::Step::more) {
+    const std::size_t count = co_await channel_.receive(buffer_, by);
+    if (count == 0) co_return after_silence(idle_);
+    parser_.feed({buffer_.data(), count});
+    if (idle_) by = Clock::now() + limits().header_timeout;
     idle_ = false;
+    step = parser_.next();
   }
-  const auto by = Deadline::Clock::now() + limits().header_timeout;
-  while (true) {
-    const Arrival arrival = parse_input();
-    if (arrival.kind != Arrival::end) co_return arrival;
-    const std::size_t count = co_await receive_more(by);
-    if (count == 0) {
-      co_return channel_.timed_out() ? Arrival{Arrival::refusal, 408} : Arrival{};
-    }
+  if (step == RequestParser::Step::refusal) co_return Arrival{false, parser_.refusal()};
+  co_return Arrival{true, 0};
+}
+
+HttpSession::Arrival HttpSession::after_silence(bool is_idle) {
+  if (!channel_.timed_out()) return {};
+  if (!is_idle) return {false, 408};
+  metrics().limits.add(LimitName::idle_timeout);
+  return {};
+}
+
+// ---- answering
+
+/// False if the connection is over.
+Awaitable<bool> HttpSession::answer_request() {
+  const Clock::time_point begun = Clock::now();
+  refresh_policy();
+  const auto place = place_of_client();
+  HttpAnswer answer = place ? judge() : busy_answer(429, "too many requests");
+  if (!place) answer.limit = LimitName::connections_per_address;
+  if (answer.lod_job) {
+    const Result<LodFilePtr> made = co_await make_lod(*answer.lod_job);
+    take_lod(answer, made);
   }
-}
-
-/// Appends what arrives to the input.
-asio::awaitable<std::size_t> HttpSession::receive_more(Deadline::Clock::time_point by) {
-  const std::size_t held = input_.size();
-  input_.resize(held + kReceiveBytes);
-  const std::size_t count =
-      co_await channel_.receive(std::span(input_).subspan(held, kReceiveBytes), by);
-  input_.resize(held + count);
-  co_return count;
-}
-
-/// Parses the input; `end` if the request is not whole yet.
-HttpSession::Arrival HttpSession::parse_input() {
-  boost::system::error_code error;
-  const std::size_t used = parser_->put(asio::buffer(input_), error);
-  if (error == http::error::need_more) {
-    input_.erase(0, used);
-    return {};
+  if (answer.status == 101) {
+    record(answer, begun);
+    co_await become_websocket(answer.stream_id);
+    co_return false;
   }
-  if (error) return refusal_of(error);
-  input_.erase(0, used);
-  return checked_request();
+  const bool keep_alive = parser_.keep_alive() && !draining();
+  const bool sent = co_await send(answer, keep_alive);
+  record(answer, begun);
+  if (!sent) channel_.reset();
+  if (sent && !keep_alive) co_await channel_.close_gently();
+  co_return sent&& keep_alive;
 }
 
-HttpSession::Arrival HttpSession::refusal_of(const boost::system::error_code& error) const {
-  if (error != http::error::header_limit) return {Arrival::refusal, 400};
-  // Beast takes the first line only when it is whole: is that what did not end?
-  const bool line_is_whole =
-      !parser_->get().target().empty() || input_.find("\r\n") < kMaxTargetBytes;
-  return {Arrival::refusal, line_is_whole ? 431 : 414};
+Awaitable<bool> HttpSession::answer_refusal(int status) {
+  HttpAnswer answer = error_answer(status, message_of(status));
+  answer.limit = limit_of(status);
+  const Clock::time_point begun = Clock::now();
+  const bool sent = co_await send(answer, false);
+  record(answer, begun);
+  if (sent) co_await channel_.close_gently();
+  co_return false;
 }
 
-/// The rules that Beast leaves to its user.
-HttpSession::Arrival HttpSession::checked_request() const {
-  const auto& message = parser_->get();
-  if (static_cast<std::size_t>(std::distance(message.begin(), message.end())) >
-      limits().header_fields) {
-    return {Arrival::refusal, 431};
-  }
-  const std::size_t hosts = message.count(http::field::host);
-  if (hosts > 1 || (hosts == 0 && message.version() >= 11)) return {Arrival::refusal, 400};
-  if (message.count(http::field::transfer_encoding) > 0) return {Arrival::refusal, 413};
-  if (parser_->content_length().value_or(0) > 0) return {Arrival::refusal, 413};
-  return {Arrival::request, 0};
+HttpAnswer HttpSession::judge() const {
+  return answer_http(parser_.request(), {.store = services().store,
+                                         .access = policy().access,
+                                         .limits = limits(),
+                                         .most_lod_faces = services().most_lod_faces,
+                                         .now = static_cast<std::uint64_t>(std::time(nullptr)),
+                                         .metrics_text = services().metrics_text,
+                                         .only_operation = services().only_operation});
 }
 
-HttpRequest HttpSession::request() const {
-  const auto& message = parser_->get();
-  return {.method = message.method_string(),
-          .target = message.target(),
-          .range = message[http::field::range],
-          .if_range = message[http::field::if_range],
-          .if_none_match = message[http::field::if_none_match]};
+/// The place that the client of a trusted proxy has for this request; nothing if it has too many
+/// under way. Other clients have one for the whole connection.
+std::optional<AddressCounts::Slot> HttpSession::place_of_client() {
+  request_client_.clear();
+  if (!services().proxies.contains(client())) return AddressCounts::Slot();
+  const auto client_behind = services().proxies.client_of(client(), parser_.forwarded_for());
+  request_client_ = client_behind.to_string();
+  if (services().proxies.contains(client_behind)) return AddressCounts::Slot();
+  return services().addresses.enter(client_behind);
+}
+
+/// Waits for a worker to be done with the job.
+Awaitable<Result<LodFilePtr>> HttpSession::make_lod(const LodJob& job) {
+  constexpr asio::use_awaitable_t<Executor> kToken;
+  const auto initiate = [this, &job](auto handler) {
+    const auto shared = std::make_shared<decltype(handler)>(std::move(handler));
+    services().lod.get(job, [shared, executor = channel_.executor()](const auto& made) {
+      asio::post(executor, [shared, made] { std::move (*shared)(made); });
+    });
+  };
+  Result<LodFilePtr> made =
+      co_await asio::async_initiate<const asio::use_awaitable_t<Executor>&,
+                                    void(Result<LodFilePtr>)>(initiate, kToken);
+  co_return made;
 }
 
 /// False if the connection must be cut: the peer has not got the whole answer.
-asio::awaitable<bool> HttpSession::send(const HttpAnswer& answer, bool keep_alive) {
+Awaitable<bool> HttpSession::send(const HttpAnswer& answer, bool keep_alive) {
   std::string head = head_text(answer, http_date(), keep_alive);
-  const bool has_body = answer.may_have_body() && !answer.head_only && answer.body_bytes() > 0;
-  if (has_body && !answer.mesh) head += answer.text;
-  const bool file_follows = has_body && answer.mesh;
-  bool sent = co_await channel_.send(as_bytes(head), file_follows);
-  if (sent && file_follows) {
-    sent = co_await channel_.send_file(*answer.mesh, answer.span);
+  const bool has_body = answer.may_have_body() && !answer.head_only;
+  if (has_body) head += answer.text;
+  Channel::Parcel parcel{as_bytes(head)};
+  if (has_body && answer.mesh) parcel = {as_bytes(head), answer.mesh.get(), answer.span};
+  const WireStep::Kind need = channel_.push(parcel);
+  bool sent = need == WireStep::moved;
+  if (!sent) sent = co_await channel_.send(parcel);
+  if (sent && has_body && answer.lod) {
+    parcel = {answer.lod->bytes};
+    sent = co_await channel_.send(parcel);
   }
   co_return sent;
+}
+
+void HttpSession::record(const HttpAnswer& answer, Clock::time_point begun) {
+  const Clock::duration duration = Clock::now() - begun;
+  metrics().requests.add(answer.route, answer.status);
+  metrics().durations.add(duration);
+  if (answer.limit) metrics().limits.add(*answer.limit);
+  if (channel_.send_timed_out()) metrics().limits.add(LimitName::send_timeout);
+  if (answer.mesh && !answer.mesh->recently_intact()) ++metrics().broken_files;
+  count_sent_bytes();
+  if (policy().access_log) log(answer, duration);
+}
+
+/// A line about the answer. What was no request has neither method nor target.
+void HttpSession::log(const HttpAnswer& answer, Clock::duration duration) const {
+  const HttpRequest request = parser_.refusal() == 0 ? parser_.request() : HttpRequest{};
+  const std::string from = name_of_client();
+  log_event(spdlog::level::info, "answered",
+            {{"client", std::string_view(from)},
+             {"method", request.method},
+             {"target", request.target},
+             {"status", std::int64_t{answer.status}},
+             {"bytes", answer.head_only ? 0 : answer.body_bytes()},
+             {"seconds", std::chrono::duration<double>(duration).count()}});
+}
+
+std::string HttpSession::name_of_client() const {
+  return request_client_.empty() ? client().to_string() : request_client_;
+}
+
+Awaitable<void> HttpSession::become_websocket(const std::string& id) {
+  become(WireProtocol::websocket);
+  const HttpRequest request = parser_.request();
+  const std::size_t question = std::min(request.target.find('?'), request.target.size() - 1);
+  websocket_ = std::make_unique<WebSocketSession>(
+      channel_, services(), policy_pointer(), name_of_client(),
+      FrameCredentials{.authorization = std::string(request.authorization),
+                       .id = id,
+                       .query = std::string(request.target.substr(question + 1))});
+  if (draining()) websocket_->drain();
+  co_await websocket_->run(parser_.message());
 }
 
 }  // namespace pmesh

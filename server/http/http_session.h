@@ -1,48 +1,58 @@
-// An HTTP/1.1 connection: requests are parsed by Beast, one at a time, and each is answered exactly
-// once by what server/http/http_answer.h says.
+// An HTTP/1.1 connection: one request at a time, each answered exactly once by what
+// server/http/http_answer.h says. A request for a WebSocket makes it one.
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <string>
 
-#include <boost/beast/http/empty_body.hpp>
-#include <boost/beast/http/parser.hpp>
-
 #include "server/http/http_answer.h"
+#include "server/http/request_parser.h"
+#include "server/http/websocket_session.h"
 #include "server/net/session.h"
 
 namespace pmesh {
 
 class HttpSession final : public Session {
  public:
-  HttpSession(boost::asio::ip::tcp::socket socket, const SessionLimits& limits, MeshStore& store)
-      : Session(std::move(socket), limits), store_(store) {}
+  HttpSession(Socket socket, Services& services, AddressCounts::Slot slot)
+      : Session(std::move(socket), services, WireProtocol::http, std::move(slot)) {}
+
+  /// What a client is told that there is no room for. It is made once, so it has no Date.
+  static std::string refusal_text();
 
  protected:
-  boost::asio::awaitable<void> run() override;
+  Awaitable<void> run() override;
   void on_drain() override;
+  std::string refusal() const override { return refusal_text(); }
 
  private:
-  using Parser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
-
-  /// What came of waiting for a request.
+  /// What came of waiting for a request: one, an answer to what is none, or the end.
   struct Arrival {
-    enum Kind { request, refusal, end } kind = end;
-    int status = 0;  ///< Of a refusal: what arrived is answered by this and the connection closed.
+    bool is_request = false;
+    int refusal = 0;
   };
 
-  boost::asio::awaitable<Arrival> next_request();
-  boost::asio::awaitable<std::size_t> receive_more(Deadline::Clock::time_point by);
-  Arrival parse_input();
-  Arrival refusal_of(const boost::system::error_code& error) const;
-  Arrival checked_request() const;
-  HttpRequest request() const;
-  boost::asio::awaitable<bool> send(const HttpAnswer& answer, bool keep_alive);
+  Awaitable<Arrival> next_request();
+  Arrival after_silence(bool is_idle);
+  Awaitable<bool> answer_request();
+  Awaitable<bool> answer_refusal(int status);
+  HttpAnswer judge() const;
+  std::optional<AddressCounts::Slot> place_of_client();
+  Awaitable<Result<LodFilePtr>> make_lod(const LodJob& job);
+  Awaitable<bool> send(const HttpAnswer& answer, bool keep_alive);
+  void record(const HttpAnswer& answer, Deadline::Clock::time_point begun);
+  void log(const HttpAnswer& answer, Deadline::Clock::duration duration) const;
+  std::string name_of_client() const;
+  Awaitable<void> become_websocket(const std::string& id);
 
-  MeshStore& store_;
-  std::optional<Parser> parser_;
-  std::string input_;  // received and not yet parsed
-  bool idle_ = false;  // between requests
+  RequestParser parser_{limits()};
+  std::array<char, 1024> buffer_;
+  std::string request_client_;  // whom the request is from, if a proxy passed it on
+  std::unique_ptr<WebSocketSession> websocket_;
+  bool is_first_ = true;  // no request has come yet
+  bool idle_ = false;     // between requests
 };
 
 }  // namespace pmesh

@@ -4,11 +4,12 @@
 #include <array>
 #include <cerrno>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <sys/sendfile.h>
 #include <sys/socket.h>
+#include <unistd.h>
+
+#include "server/net/address_block.h"
 
 namespace pmesh {
 
@@ -17,19 +18,27 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr auto kAwait = asio::as_tuple(asio::use_awaitable);
-
 /// A file is looked at for changes once in so many bytes.
 constexpr std::uint64_t kSendFileBytes = 1024 * 1024;
 
 constexpr std::chrono::seconds kLingerTime{1};
 constexpr std::size_t kLingerBytes = 256 * 1024;
 
-bool must_wait(int error_number) { return error_number == EAGAIN || error_number == EWOULDBLOCK; }
+/// What the result of a system call that sends comes to.
+WireStep step_of(ssize_t sent) {
+  if (sent > 0) return {WireStep::moved, static_cast<std::size_t>(sent)};
+  if (sent == 0) return {};
+  if (errno == EAGAIN || errno == EWOULDBLOCK) return {WireStep::must_write, 0};
+  return {errno == EINTR ? WireStep::interrupted : WireStep::ended, 0};
+}
+
+asio::socket_base::wait_type wait_of(WireStep::Kind need) {
+  return need == WireStep::must_read ? asio::socket_base::wait_read : asio::socket_base::wait_write;
+}
 
 }  // namespace
 
-Channel::Channel(asio::ip::tcp::socket socket, const SessionLimits& limits)
+Channel::Channel(Socket socket, const SessionLimits& limits)
     : socket_(std::move(socket)),
       executor_(socket_.get_executor()),
       send_timeout_(limits.send_timeout) {
@@ -41,23 +50,56 @@ Channel::Channel(asio::ip::tcp::socket socket, const SessionLimits& limits)
     timed_out_ = true;
     interrupt_receive();
   });
-  send_deadline_ = std::make_shared<Deadline>(executor_, [this] { reset(); });
+  send_deadline_ = std::make_shared<Deadline>(executor_, [this] {
+    send_timed_out_ = true;
+    reset();
+  });
 }
 
 Channel::~Channel() { close(); }
 
-asio::awaitable<std::size_t> Channel::receive(std::span<char> into,
-                                              Deadline::Clock::time_point by) {
+asio::ip::address Channel::peer() const {
+  error_code ignored;
+  return unmapped(socket_.remote_endpoint(ignored).address());
+}
+
+// ---- receiving
+
+/// Without TLS one read by Asio takes fewer system calls than a wait and a read.
+Awaitable<std::size_t> Channel::receive(std::span<char> into, Deadline::Clock::time_point by) {
   timed_out_ = interrupted_ = false;
   receive_deadline_->set(by);
-  error_code error;
   std::size_t count = 0;
-  do {  // a wait for the same socket that is cancelled takes this one with it
-    std::tie(error, count) =
-        co_await socket_.async_read_some(asio::buffer(into.data(), into.size()), kAwait);
-  } while (error == asio::error::operation_aborted && socket_.is_open() && !interrupted_);
+  error_code error;
+  if (tls_) {
+    count = co_await receive_decrypted(into);
+  } else {
+    do {  // a wait for the same socket that is cancelled takes this one with it
+      std::tie(error, count) =
+          co_await socket_.async_read_some(asio::buffer(into.data(), into.size()), kAwait);
+    } while (error == asio::error::operation_aborted && socket_.is_open() && !interrupted_);
+  }
   receive_deadline_->clear();
   co_return error ? 0 : count;
+}
+
+Awaitable<std::size_t> Channel::receive_decrypted(std::span<char> into) {
+  bool may_go_on = true;
+  while (may_go_on && socket_.is_open() && !interrupted_) {
+    const WireStep step = tls_->read(into);
+    if (step.kind == WireStep::moved) co_return step.count;
+    if (step.kind == WireStep::ended) co_return 0;
+    may_go_on = co_await wait_to_receive(step.kind);
+  }
+  co_return 0;
+}
+
+Awaitable<bool> Channel::wait_to_receive(WireStep::Kind need) {
+  error_code error;
+  do {
+    std::tie(error) = co_await socket_.async_wait(wait_of(need), kAwait);
+  } while (error == asio::error::operation_aborted && socket_.is_open() && !interrupted_);
+  co_return !error;
 }
 
 void Channel::interrupt_receive() {
@@ -66,52 +108,94 @@ void Channel::interrupt_receive() {
   socket_.cancel(ignored);
 }
 
-asio::awaitable<bool> Channel::send(ByteView bytes, bool more_follows) {
-  bool connected = true;
-  while (connected && !bytes.empty()) {
-    const ssize_t sent = ::send(socket_.native_handle(), bytes.data(), bytes.size(),
-                                MSG_NOSIGNAL | (more_follows ? MSG_MORE : 0));
-    if (sent >= 0) {
-      bytes = bytes.subspan(static_cast<std::size_t>(sent));
-    } else if (must_wait(errno)) {
-      connected = co_await wait_until_writable();
-    } else {
-      connected = errno == EINTR;
-    }
-  }
-  co_return connected;
+Awaitable<bool> Channel::wait_for_bytes(Deadline::Clock::time_point by) {
+  timed_out_ = interrupted_ = false;
+  receive_deadline_->set(by);
+  const bool arrived = co_await wait_to_receive(WireStep::must_read);
+  receive_deadline_->clear();
+  co_return arrived;
 }
 
-asio::awaitable<bool> Channel::send_file(const MeshFile& mesh, ByteSpan span) {
-  auto offset = static_cast<off_t>(span.begin);
-  const auto end = static_cast<off_t>(span.end);
-  bool connected = true;
-  while (connected && offset < end) {
-    if (!mesh.intact()) co_return false;
-    const auto count = std::min(static_cast<std::uint64_t>(end - offset), kSendFileBytes);
-    const ssize_t sent = ::sendfile(socket_.native_handle(), mesh.descriptor(), &offset, count);
-    if (sent == 0) co_return false;  // the file was truncated just now
-    if (sent > 0) continue;
-    if (must_wait(errno)) {
-      connected = co_await wait_until_writable();
-    } else {
-      connected = errno == EINTR;
-    }
-  }
-  co_return connected;
+std::span<char> Channel::peek(std::span<char> into) {
+  const ssize_t count =
+      ::recv(socket_.native_handle(), into.data(), into.size(), MSG_PEEK | MSG_DONTWAIT);
+  return into.first(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
 }
 
-asio::awaitable<bool> Channel::wait_until_writable() {
+// ---- sending
+
+/// The head is held back (MSG_MORE) until a file's first bytes can go with it.
+WireStep Channel::write(const Parcel& parcel) {
+  const bool has_file = parcel.span.size() > 0;
+  if (!parcel.head.empty()) {
+    return step_of(::send(socket_.native_handle(), parcel.head.data(), parcel.head.size(),
+                          MSG_NOSIGNAL | (has_file ? MSG_MORE : 0)));
+  }
+  if (!parcel.mesh->recently_intact()) return {};
+  auto offset = static_cast<off_t>(parcel.span.begin);
+  return step_of(::sendfile(socket_.native_handle(), parcel.mesh->descriptor(), &offset,
+                            std::min(parcel.span.size(), kSendFileBytes)));
+}
+
+/// As much of head and file as one record takes. A record that could not be sent at once is made
+/// again, the same, for the next try: so no connection holds a buffer.
+WireStep Channel::write_record(const Parcel& parcel) {
+  thread_local std::array<std::uint8_t, TlsStream::kRecordBytes> record;
+  const std::size_t from_head = std::min(parcel.head.size(), record.size());
+  std::copy_n(parcel.head.begin(), from_head, record.begin());
+  const auto from_file = static_cast<std::size_t>(
+      std::min<std::uint64_t>(record.size() - from_head, parcel.span.size()));
+  if (from_file > 0) {
+    if (!parcel.mesh->recently_intact()) return {};
+    const ssize_t read = ::pread(parcel.mesh->descriptor(), record.data() + from_head, from_file,
+                                 static_cast<off_t>(parcel.span.begin));
+    if (read != static_cast<ssize_t>(from_file)) return {};  // the file was truncated just now
+  }
+  return tls_->write(ByteView(record).first(from_head + from_file));
+}
+
+WireStep::Kind Channel::push(Parcel& parcel) {
+  while (!parcel.empty()) {
+    const WireStep step = tls_ ? write_record(parcel) : write(parcel);
+    if (step.kind == WireStep::interrupted) continue;
+    if (step.kind != WireStep::moved) return step.kind;
+    sent_bytes_ += step.count;
+    const std::size_t from_head = std::min(step.count, parcel.head.size());
+    const bool is_full =
+        !tls_ && from_head == 0 && step.count < std::min(parcel.span.size(), kSendFileBytes);
+    parcel.head = parcel.head.subspan(from_head);
+    parcel.span.begin += step.count - from_head;
+    if (is_full) return WireStep::must_write;  // a second try would only be told so
+  }
+  return WireStep::moved;
+}
+
+Awaitable<bool> Channel::send(Parcel parcel) {
+  bool connected = true;
+  while (connected) {
+    const WireStep::Kind need = push(parcel);
+    if (need == WireStep::moved) co_return true;
+    connected = co_await wait_to_send(need);
+  }
+  co_return false;
+}
+
+/// Waits until a step that could not be made can be; false if it never can.
+Awaitable<bool> Channel::wait_to_send(WireStep::Kind need) {
+  if (need == WireStep::ended || !socket_.is_open()) co_return false;
   send_deadline_->set(Deadline::Clock::now() + send_timeout_);
   error_code error;
   do {
-    std::tie(error) = co_await socket_.async_wait(asio::socket_base::wait_write, kAwait);
+    std::tie(error) = co_await socket_.async_wait(wait_of(need), kAwait);
   } while (error == asio::error::operation_aborted && socket_.is_open());
   send_deadline_->clear();
   co_return !error;
 }
 
-asio::awaitable<void> Channel::close_gently() {
+// ---- the end
+
+Awaitable<void> Channel::close_gently() {
+  if (tls_) tls_->say_goodbye();
   // Closing a socket with unread bytes resets the connection, and the answer with it.
   error_code ignored;
   socket_.shutdown(asio::socket_base::shutdown_send, ignored);

@@ -1,66 +1,97 @@
-// A connected socket with timeouts: what HTTP and TCP sessions are written on. Files leave by
-// sendfile(2), without passing through this process.
+// A connected socket with timeouts: what HTTP and frame sessions are written on. Without TLS files
+// leave by sendfile(2), without passing through this process; with it, by way of one record.
 #pragma once
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <span>
-
-#include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
 
 #include "core/base/bytes.h"
 #include "protocol/byte_range.h"
+#include "server/net/asio_types.h"
 #include "server/net/deadline.h"
-#include "server/store/mesh_file.h"
+#include "server/net/tls.h"
 #include "server/options.h"
+#include "server/store/mesh_file.h"
 
 namespace pmesh {
 
-/// Threads: all on the socket's executor, which is a strand. At most one receive and one send at a
-/// time. After reset() or a failed send everything fails at once.
+/// Threads: all on the socket's executor, which runs one handler at a time. At most one receive and
+/// one send at a time. After reset() or a failed send everything fails at once.
 class Channel {
  public:
-  Channel(boost::asio::ip::tcp::socket socket, const SessionLimits& limits);
+  Channel(Socket socket, const SessionLimits& limits);
   ~Channel();
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
-  const boost::asio::ip::tcp::socket::executor_type& executor() { return executor_; }
+  const Executor& executor() { return executor_; }
+
+  /// The other end's address; unspecified if the connection is over already.
+  boost::asio::ip::address peer() const;
+
+  /// Speaks TLS from now on. Precondition: nothing was received or sent. Throws std::bad_alloc.
+  void start_tls(const TlsContext& context) { tls_.emplace(context, socket_.native_handle()); }
 
   /// Waits for bytes and gives their number; 0 if the peer closed, the connection broke, the time
   /// was up (then timed_out() is true), or interrupt_receive() was called meanwhile.
-  boost::asio::awaitable<std::size_t> receive(std::span<char> into, Deadline::Clock::time_point by);
+  Awaitable<std::size_t> receive(std::span<char> into, Deadline::Clock::time_point by);
   bool timed_out() const { return timed_out_; }
   void interrupt_receive();
 
-  /// Sends all of it; false if that failed. `more_follows` holds a last, small packet back until
-  /// the next call (MSG_MORE).
-  boost::asio::awaitable<bool> send(ByteView bytes, bool more_follows = false);
+  /// Waits until something can be received; false if the time was up first.
+  Awaitable<bool> wait_for_bytes(Deadline::Clock::time_point by);
+  /// What has arrived and was not received yet, up to the size of `into`; it stays unreceived.
+  /// Empty if nothing has, or the connection is over. Precondition: no TLS.
+  std::span<char> peek(std::span<char> into);
 
-  /// Sends these bytes of the file; false if that failed or the file is no longer intact. Then the
-  /// peer has been sent too little, and the connection must be cut.
-  boost::asio::awaitable<bool> send_file(const MeshFile& mesh, ByteSpan span);
+  /// Bytes, and then perhaps some of a file, on their way out.
+  struct Parcel {
+    ByteView head;
+    const MeshFile* mesh = nullptr;  ///< May be null; else `span` of its file follows the head.
+    ByteSpan span{};
+
+    bool empty() const { return head.empty() && span.size() == 0; }
+  };
+
+  /// Sends all of it; false if that failed or the file is no longer intact. Then the peer has been
+  /// sent too little, and the connection must be cut. What is pointed to must stay until then.
+  Awaitable<bool> send(Parcel parcel);
+  /// The same, without waiting: sends what can be sent now and takes it off `parcel`. Often that is
+  /// all, and no coroutine is needed. Says what is to be waited for, or `moved` once all is sent.
+  WireStep::Kind push(Parcel& parcel);
+  /// Whether the last send failed because the peer took no byte for too long.
+  bool send_timed_out() const { return send_timed_out_; }
+  /// Handed to the kernel so far, without what TLS adds.
+  std::uint64_t sent_bytes() const { return sent_bytes_; }
 
   /// Ends the connection. What was sent still arrives if the peer has not sent anything unread.
   void close();
 
   /// Ends the connection so that the peer gets all that was sent, even if it was still sending.
-  boost::asio::awaitable<void> close_gently();
+  Awaitable<void> close_gently();
 
   /// Ends it at once: the peer gets a reset, the kernel drops what it had queued.
   void reset();
 
  private:
-  boost::asio::awaitable<bool> wait_until_writable();
+  Awaitable<std::size_t> receive_decrypted(std::span<char> into);
+  Awaitable<bool> wait_to_receive(WireStep::Kind need);
+  WireStep write(const Parcel& parcel);
+  WireStep write_record(const Parcel& parcel);
+  Awaitable<bool> wait_to_send(WireStep::Kind need);
 
-  boost::asio::ip::tcp::socket socket_;
-  boost::asio::ip::tcp::socket::executor_type executor_;
+  Socket socket_;
+  Executor executor_;
+  std::optional<TlsStream> tls_;
   const std::chrono::milliseconds send_timeout_;
   std::shared_ptr<Deadline> receive_deadline_;
   std::shared_ptr<Deadline> send_deadline_;
+  std::uint64_t sent_bytes_ = 0;
   bool timed_out_ = false;
   bool interrupted_ = false;
+  bool send_timed_out_ = false;
 };
 
 }  // namespace pmesh

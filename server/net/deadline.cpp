@@ -2,7 +2,7 @@
 
 namespace pmesh {
 
-Deadline::Deadline(const boost::asio::any_io_executor& executor, std::function<void()> reached)
+Deadline::Deadline(const Executor& executor, std::function<void()> reached)
     : timer_(executor), reached_(std::move(reached)) {}
 
 void Deadline::set(Clock::time_point when) {

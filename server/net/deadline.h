@@ -5,19 +5,18 @@
 #include <functional>
 #include <memory>
 
-#include <boost/asio/any_io_executor.hpp>
-#include <boost/asio/steady_timer.hpp>
+#include "server/net/asio_types.h"
 
 namespace pmesh {
 
 /// Moving the deadline later is only a store: the timer wakes up at the earliest point set since
-/// and then goes back to sleep. Threads: all on the executor, which is a strand.
+/// and then goes back to sleep. Threads: all on the executor's.
 class Deadline : public std::enable_shared_from_this<Deadline> {
  public:
   using Clock = std::chrono::steady_clock;
 
   /// `reached` runs each time that a deadline passes, until stop().
-  Deadline(const boost::asio::any_io_executor& executor, std::function<void()> reached);
+  Deadline(const Executor& executor, std::function<void()> reached);
 
   void set(Clock::time_point when);
   void clear() { when_ = Clock::time_point::max(); }
@@ -27,7 +26,7 @@ class Deadline : public std::enable_shared_from_this<Deadline> {
  private:
   void sleep();
 
-  boost::asio::steady_timer timer_;
+  Timer timer_;
   std::function<void()> reached_;
   Clock::time_point when_ = Clock::time_point::max();
   Clock::time_point wakes_ = Clock::time_point::max();  // max: no wait is under way

@@ -1,16 +1,15 @@
 #include "server/net/listener.h"
 
+#include <cerrno>
 #include <sstream>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/strand.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
-#include "core/base/parse_number.h"
+#include "server/net/endpoint.h"
 
 namespace pmesh {
 
@@ -20,22 +19,8 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr auto kAwait = asio::as_tuple(asio::use_awaitable);
 constexpr std::chrono::milliseconds kPauseAfterError{100};
 constexpr std::size_t kMostRefusals = 256;
-
-Result<tcp::endpoint> parse_endpoint(const std::string& text) {
-  const Error wrong{ErrorCode::usage, text + ": expected ADDRESS:PORT, such as 127.0.0.1:8080"};
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos) return wrong;
-  std::string host = text.substr(0, colon);
-  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  const auto port = parse_whole<std::uint16_t>(std::string_view(text).substr(colon + 1));
-  error_code bad_host;
-  const auto address = asio::ip::make_address(host, bad_host);
-  if (bad_host || !port) return wrong;
-  return tcp::endpoint(address, *port);
-}
 
 Error listen_error(const std::string& address, const error_code& error) {
   const bool exhausted = error == asio::error::no_descriptors || error == asio::error::no_memory ||
@@ -47,29 +32,34 @@ Error listen_error(const std::string& address, const error_code& error) {
 
 }  // namespace
 
-Result<std::shared_ptr<Listener>> Listener::bind(asio::io_context& context,
-                                                 const std::string& address,
+Result<std::shared_ptr<Listener>> Listener::bind(Reactors& reactors, const std::string& address,
                                                  SessionRegistry& registry,
                                                  MakeSession make_session,
                                                  MakeSession make_refusal) {
   const auto endpoint = parse_endpoint(address);
   if (!endpoint) return endpoint.error();
   std::shared_ptr<Listener> listener(
-      new Listener(context, registry, std::move(make_session), std::move(make_refusal)));
-  tcp::acceptor& acceptor = listener->acceptor_;
+      new Listener(reactors, registry, std::move(make_session), std::move(make_refusal)));
+  listener->protocol_ = endpoint->protocol();
+  Acceptor& acceptor = listener->acceptor_;
   error_code error;
   acceptor.open(endpoint->protocol(), error);
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(*endpoint, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (!error) acceptor.non_blocking(true, error);
   if (error) return listen_error(address, error);
   return listener;
 }
 
-Listener::Listener(asio::io_context& context, SessionRegistry& registry, MakeSession make_session,
+Listener::Connection::~Connection() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Listener::Listener(Reactors& reactors, SessionRegistry& registry, MakeSession make_session,
                    MakeSession make_refusal)
-    : context_(context),
-      acceptor_(asio::make_strand(context)),
+    : reactors_(reactors),
+      acceptor_(reactors.first()),
       registry_(registry),
       make_session_(std::move(make_session)),
       make_refusal_(std::move(make_refusal)),
@@ -85,7 +75,7 @@ std::string Listener::address() const {
 void Listener::start() {
   asio::co_spawn(
       acceptor_.get_executor(),
-      [self = shared_from_this()]() -> asio::awaitable<void> { co_await self->accept_all(); },
+      [self = shared_from_this()]() -> Awaitable<void> { co_await self->accept_all(); },
       [](const std::exception_ptr& exception) {
         if (exception) log_exception("accepting connections", exception);
       });
@@ -98,30 +88,48 @@ void Listener::stop() {
   });
 }
 
-asio::awaitable<void> Listener::accept_all() {
-  asio::steady_timer pause(acceptor_.get_executor());
+Awaitable<void> Listener::accept_all() {
+  Timer pause(acceptor_.get_executor());
   while (acceptor_.is_open()) {
-    auto [error, socket] = co_await acceptor_.async_accept(asio::make_strand(context_), kAwait);
-    if (!error) {
-      take(std::move(socket));
-    } else if (acceptor_.is_open() && error != asio::error::connection_aborted) {
-      // Out of descriptors, most likely: the connection stays queued, and trying at once would
-      // spin.
-      spdlog::warn("cannot accept a connection: {}", error.message());
-      pause.expires_after(kPauseAfterError);
-      co_await pause.async_wait(kAwait);
-    }
+    const auto [wait_error] = co_await acceptor_.async_wait(asio::socket_base::wait_read, kAwait);
+    if (wait_error) continue;
+    const int failure = accept_waiting();
+    if (failure == 0) continue;
+    // Out of descriptors, most likely: the connection stays queued, and trying at once would spin.
+    spdlog::warn("cannot accept a connection: {}",
+                 error_code(failure, asio::error::get_system_category()).message());
+    pause.expires_after(kPauseAfterError);
+    co_await pause.async_wait(kAwait);
   }
 }
 
-/// Starts the connection's session; without memory for one the connection is closed.
-void Listener::take(tcp::socket socket) {
-  try {
-    if (!registry_.full()) {
-      registry_.start(make_session_(std::move(socket)));
-    } else if (!refusals_.full()) {
-      refusals_.start(make_refusal_(std::move(socket)));
+/// Hands the connections that wait to the reactors in turn. Gives the number of the error that
+/// keeps it from going on; 0 if there are no more.
+int Listener::accept_waiting() {
+  while (true) {
+    const int descriptor =
+        ::accept4(acceptor_.native_handle(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (descriptor < 0) {
+      if (errno == EINTR || errno == ECONNABORTED) continue;
+      return errno == EAGAIN || errno == EWOULDBLOCK ? 0 : errno;
     }
+    asio::io_context& context = reactors_.next();
+    asio::post(context, [self = shared_from_this(), &context,
+                         connection = Connection(descriptor)]() mutable {
+      self->take(context, std::move(connection));
+    });
+  }
+}
+
+/// Starts the connection's session on its own thread; without memory for one it is closed.
+void Listener::take(asio::io_context& context, Connection connection) {
+  try {
+    Socket socket(context, protocol_, connection.get());
+    connection.release();
+    const auto session = registry_.full() ? nullptr : make_session_(socket);
+    if (session) return registry_.start(session);
+    if (refusals_.full()) return;
+    if (const auto refusal = make_refusal_(socket)) refusals_.start(refusal);
   } catch (...) {
     log_exception("starting a session", std::current_exception());
   }

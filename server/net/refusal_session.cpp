@@ -2,8 +2,9 @@
 
 namespace pmesh {
 
-boost::asio::awaitable<void> RefusalSession::run() {
-  const bool sent = co_await channel_.send(as_bytes(text_));
+Awaitable<void> RefusalSession::run() {
+  const Channel::Parcel parcel{as_bytes(text_)};
+  const bool sent = co_await channel_.send(parcel);
   if (sent) co_await channel_.close_gently();
 }
 

@@ -10,12 +10,13 @@ namespace pmesh {
 
 class RefusalSession final : public Session {
  public:
-  RefusalSession(boost::asio::ip::tcp::socket socket, const SessionLimits& limits, std::string text)
-      : Session(std::move(socket), limits), text_(std::move(text)) {}
+  RefusalSession(Socket socket, Services& services, WireProtocol protocol, std::string text)
+      : Session(std::move(socket), services, protocol, {}), text_(std::move(text)) {}
 
  protected:
-  boost::asio::awaitable<void> run() override;
+  Awaitable<void> run() override;
   void on_drain() override {}
+  std::string refusal() const override { return text_; }
 
  private:
   std::string text_;

@@ -1,19 +1,16 @@
-// What the sessions of either protocol have in common: a channel, and an orderly end.
+// What the sessions of either protocol have in common: a channel, whom it leads to, and an orderly
+// end.
 #pragma once
 
-#include <atomic>
 #include <exception>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <set>
+#include <string>
 #include <string_view>
 
-#include <boost/asio/awaitable.hpp>
-
+#include "server/net/asio_types.h"
 #include "server/net/channel.h"
-#include "server/store/mesh_store.h"
-#include "server/options.h"
+#include "server/services.h"
 
 namespace pmesh {
 
@@ -23,9 +20,10 @@ void log_exception(std::string_view what, const std::exception_ptr& exception);
 /// One connection from accept to close. It lives as long as its coroutine runs.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(boost::asio::ip::tcp::socket socket, const SessionLimits& limits)
-      : channel_(std::move(socket), limits), limits_(limits) {}
-  virtual ~Session() = default;
+  /// `slot` is the place that the peer has among its address's connections; a trusted proxy needs
+  /// none for itself.
+  Session(Socket socket, Services& services, WireProtocol protocol, AddressCounts::Slot slot);
+  virtual ~Session();
 
   /// Runs the session to its end; `ended` is called then, on any thread. Throws if memory is short;
   /// then `ended` is not called.
@@ -37,47 +35,55 @@ class Session : public std::enable_shared_from_this<Session> {
   void cut();
 
  protected:
-  /// The whole session, on the channel's strand. In coroutines let co_await stand in a statement of
-  /// its own or initialise a variable, never in a condition: g++ 12 miscompiles some of those.
-  virtual boost::asio::awaitable<void> run() = 0;
-  /// On the strand, once draining() has become true: wake up whoever waits for the peer.
+  /// The whole session, on the channel's thread. In coroutines let co_await stand in a statement of
+  /// its own or initialise a variable, never in a condition or after co_return, and give what it
+  /// awaits no brace-made temporaries: g++ 12 miscompiles some of those.
+  virtual Awaitable<void> run() = 0;
+  /// On the channel's thread, once draining() has become true: wake up whoever waits for the peer.
   virtual void on_drain() = 0;
+  /// What a client is told that has too many connections already.
+  virtual std::string refusal() const = 0;
 
   bool draining() const { return draining_; }
-  const SessionLimits& limits() const { return limits_; }
+  Services& services() const { return services_; }
+  Metrics& metrics() const { return services_.metrics; }
+  /// As it stood when the connection began, or when refresh_policy() was last called.
+  const Policy& policy() const { return *policy_; }
+  const PolicyPtr& policy_pointer() const { return policy_; }
+  const SessionLimits& limits() const { return policy_->limits; }
+  void refresh_policy();
+  /// Who has connected, or for whom a trusted proxy has.
+  const boost::asio::ip::address& client() const { return client_; }
 
+  /// From now on the connection counts as one of this protocol.
+  void become(WireProtocol protocol);
+  /// Counts what was sent since the last time.
+  void count_sent_bytes();
+
+ private:
+  enum class Welcome : std::uint8_t {
+    yes,
+    no,       // to be told why
+    unheard,  // not even that: it broke the rules or went away
+  };
+
+  Awaitable<void> live();
+  Awaitable<Welcome> take_proxy_header();
+  bool enter(const boost::asio::ip::address& client);
+
+  Services& services_;
+  std::uint64_t policy_version_;
+  PolicyPtr policy_;
+
+ protected:
   Channel channel_;
 
  private:
-  const SessionLimits& limits_;  // the server's, which outlives it
+  boost::asio::ip::address client_;
+  AddressCounts::Slot slot_;
+  WireProtocol protocol_;
+  std::uint64_t counted_bytes_ = 0;
   bool draining_ = false;
-};
-
-/// The sessions that run. Threads: all members may be called at the same time.
-class SessionRegistry {
- public:
-  explicit SessionRegistry(std::size_t most) : most_(most) {}
-
-  bool full() const { return count_.load() >= most_; }
-  std::size_t count() const { return count_.load(); }
-
-  /// Registers the session and starts it; it is let go when it ends. While draining it is drained
-  /// at once. Throws if memory is short; then it is not registered.
-  void start(const std::shared_ptr<Session>& session);
-
-  /// Drains all sessions; `emptied` is called, on any thread, when the last has ended, at once if
-  /// there are none.
-  void drain(std::function<void()> emptied);
-  void cut();
-
- private:
-  void remove(const std::shared_ptr<Session>& session);
-
-  const std::size_t most_;
-  std::atomic<std::size_t> count_ = 0;
-  std::mutex mutex_;  // guards the two below
-  std::set<std::shared_ptr<Session>> sessions_;
-  std::function<void()> emptied_;  // set while draining
 };
 
 }  // namespace pmesh

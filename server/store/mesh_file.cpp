@@ -61,4 +61,10 @@ Status MeshFile::check_sections() const {
 
 bool MeshFile::intact() const { return stamp_of_descriptor(descriptor()) == stamp_; }
 
+bool MeshFile::recently_intact() const {
+  constexpr std::chrono::milliseconds kInterval{10};
+  if (file_look_.is_due(kInterval) && !intact()) broken_ = true;
+  return !broken_;
+}
+
 }  // namespace pmesh

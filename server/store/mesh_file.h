@@ -1,6 +1,7 @@
 // One PM file as it is served: immutable from the moment it was opened.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "core/base/result.h"
 #include "core/pm/pm_file.h"
+#include "server/store/look.h"
 
 namespace pmesh {
 
@@ -43,6 +45,9 @@ class MeshFile {
   int descriptor() const { return file_.file().descriptor(); }
   const FileStamp& stamp() const { return stamp_; }
 
+  /// As PmFile::decode(): the mesh after the first `chunk_count` chunks.
+  Result<RefinableMesh> decode(std::size_t chunk_count) const { return file_.decode(chunk_count); }
+
   /// Reads base and chunks and checks their digests: what a file needs that was written to in
   /// place, as its prologue and hash may have stayed what they were.
   Status check_sections() const;
@@ -50,11 +55,19 @@ class MeshFile {
   /// False once the open file was written to or truncated: its bytes are no longer what the hash
   /// promises. A file replaced by rename stays intact.
   bool intact() const;
+  /// The same as of some milliseconds ago: for whoever asks for every packet.
+  bool recently_intact() const;
+
+  /// When the name that this mesh stands under is to be looked at again.
+  const Look& name_look() const { return name_look_; }
 
  private:
   std::string id_;
   PmFile file_;
   FileStamp stamp_;
+  Look name_look_;
+  Look file_look_;
+  mutable std::atomic<bool> broken_ = false;  // found at the last look
 };
 
 using MeshPtr = std::shared_ptr<const MeshFile>;

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "protocol/mesh_id.h"
+#include "server/store/mesh_scan.h"
 
 namespace pmesh {
 
@@ -30,38 +31,38 @@ bool changed_in_place(const FileStamp& before, const FileStamp& now) {
   return before.device == now.device && before.inode == now.inode && before != now;
 }
 
-/// Why a file of the directory is not even looked into; empty if it is, or is of no interest.
-/// `path` is relative to the directory.
-std::string reason_to_pass_over(const fs::directory_entry& entry, const std::string& path) {
-  std::error_code ignored;
-  if (entry.is_directory(ignored)) {
-    return entry.is_symlink(ignored) ? "a link to a directory" : "";
-  }
-  if (!path.ends_with(kMeshFileSuffix)) return "";
-  if (!mesh_id_of_path(path)) return "its path gives no mesh id";
-  return entry.is_regular_file(ignored) ? "" : "not a regular file";
-}
-
 }  // namespace
 
 Result<std::unique_ptr<MeshStore>> MeshStore::open(const std::string& directory,
-                                                   std::chrono::milliseconds rescan_interval) {
+                                                   std::chrono::milliseconds rescan_interval,
+                                                   std::chrono::milliseconds look_interval) {
   std::error_code error;
   const fs::path root = fs::canonical(directory, error);
   if (error || !fs::is_directory(root, error)) {
     return Error{ErrorCode::usage, directory + ": not a directory that can be read"};
   }
-  std::unique_ptr<MeshStore> store(new MeshStore(root.string(), rescan_interval));
+  std::unique_ptr<MeshStore> store(new MeshStore(root.string(), rescan_interval, look_interval));
   store->rescan();
   return store;
 }
 
-MeshStore::MeshStore(std::string root, std::chrono::milliseconds rescan_interval)
+MeshStore::MeshStore(std::string root, std::chrono::milliseconds rescan_interval,
+                     std::chrono::milliseconds look_interval)
     : root_(std::move(root)),
       rescan_interval_(rescan_interval),
+      look_interval_(look_interval),
       most_meshes_(half_of_descriptors()) {}
 
+/// The mesh of this id if its name was looked at just now; else null.
+MeshPtr MeshStore::known_mesh(const std::string& id) const {
+  const std::shared_lock lock(mutex_);
+  const auto entry = entries_.find(id);
+  if (entry == entries_.end() || !entry->second.mesh) return nullptr;
+  return entry->second.mesh->name_look().is_due(look_interval_) ? nullptr : entry->second.mesh;
+}
+
 Result<MeshPtr> MeshStore::find(const std::string& id) {
+  if (MeshPtr known = known_mesh(id)) return known;
   if (!is_mesh_id(id)) return MeshPtr();
   const auto stamp = stamp_of(path_of(id));
   if (!stamp) {
@@ -102,20 +103,6 @@ std::string MeshStore::path_of(const std::string& id) const {
   return root_ + "/" + path_of_mesh_id(id);
 }
 
-/// Ids are paths, so no directory may have two: only the last part of a path may be a link.
-Status MeshStore::check_place(const std::string& path) const {
-  std::error_code error;
-  const fs::path directory = fs::path(path).parent_path();
-  if (fs::canonical(directory, error) != directory || error) {
-    return bad_input(path + ": a directory on its path is a link");
-  }
-  const fs::path target = fs::canonical(path, error);
-  if (error || !target.string().starts_with(root_ == "/" ? root_ : root_ + "/")) {
-    return bad_input(path + ": a link out of the served directory");
-  }
-  return {};
-}
-
 std::optional<MeshStore::Entry> MeshStore::entry_of(const std::string& id) const {
   const std::shared_lock lock(mutex_);
   const auto entry = entries_.find(id);
@@ -137,7 +124,7 @@ bool MeshStore::has_room(const Entry& before) {
 
 Result<MeshPtr> MeshStore::load(const std::string& id, const Entry& before) const {
   const std::string path = path_of(id);
-  if (Status place = check_place(path); !place) return place.error();
+  if (Status place = check_place(root_, path); !place) return place.error();
   const Result<MeshPtr> mesh = MeshFile::open(id, path);
   if (!mesh || !changed_in_place(before.stamp, (*mesh)->stamp())) return mesh;
   if (Status sections = (*mesh)->check_sections(); !sections) return sections.error();
@@ -212,28 +199,16 @@ void MeshStore::rescan() {
 
 /// The ids of the files below the directory. Logs what it passes over, unless the last scan did.
 std::vector<std::string> MeshStore::scan() {
-  std::vector<std::string> ids;
-  std::map<std::string, std::string> left_out;
-  std::error_code error;
-  fs::recursive_directory_iterator entry(root_, fs::directory_options::skip_permission_denied,
-                                         error);
-  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    const std::string path = entry->path().lexically_relative(root_).generic_string();
-    if (std::string why = reason_to_pass_over(*entry, path); !why.empty()) {
-      left_out.emplace(entry->path().string(), std::move(why));
-    } else if (auto id = mesh_id_of_path(path)) {
-      ids.push_back(std::move(*id));
-    }
-  }
-  for (const auto& [path, why] : left_out) {
+  MeshScan found = scan_meshes(root_);
+  for (const auto& [path, why] : found.left_out) {
     if (!left_out_.contains(path)) spdlog::warn("skipped {}: {}", path, why);
   }
-  if (error) {
-    spdlog::warn("scan of {} ended early: {}", root_, error.message());
-    left_out.merge(left_out_);
+  if (!found.fault.empty()) {
+    spdlog::warn("scan of {} ended early: {}", root_, found.fault);
+    found.left_out.merge(left_out_);
   }
-  left_out_ = std::move(left_out);
-  return ids;
+  left_out_ = std::move(found.left_out);
+  return std::move(found.ids);
 }
 
 }  // namespace pmesh

@@ -24,19 +24,22 @@
 
 namespace pmesh {
 
-/// Threads: all members may be called at the same time. File system calls (a stat for a mesh that
-/// is known) happen on the calling thread.
+/// Threads: all members may be called at the same time. File system calls (now and then a stat for
+/// a mesh that is known) happen on the calling thread.
 class MeshStore {
  public:
   static constexpr std::chrono::milliseconds kRescanInterval{1000};
+  static constexpr std::chrono::milliseconds kLookInterval{20};
 
   /// Opens every PM file under `directory`, up to half the descriptors that the process may have
   /// (RLIMIT_NOFILE): the others are for connections. Fails (usage) if it is no directory.
   static Result<std::unique_ptr<MeshStore>> open(
-      const std::string& directory, std::chrono::milliseconds rescan_interval = kRescanInterval);
+      const std::string& directory, std::chrono::milliseconds rescan_interval = kRescanInterval,
+      std::chrono::milliseconds look_interval = kLookInterval);
 
-  /// The mesh that stands under this id in the directory now; null if none does. Fails (runtime,
-  /// out_of_resources) if a file stands there that cannot be opened now: a later try may succeed.
+  /// The mesh that stands under this id in the directory now, or stood there a look interval ago;
+  /// null if none does. Fails (runtime, out_of_resources) if a file stands there that cannot be
+  /// opened now: a later try may succeed.
   Result<MeshPtr> find(const std::string& id);
 
   /// The same with this hash: the mesh that stands there now, or one replaced since that a
@@ -54,11 +57,12 @@ class MeshStore {
     FileStamp attempted;  // of the file when last it could not be opened, which is in the log
   };
 
-  MeshStore(std::string root, std::chrono::milliseconds rescan_interval);
+  MeshStore(std::string root, std::chrono::milliseconds rescan_interval,
+            std::chrono::milliseconds look_interval);
 
   std::string path_of(const std::string& id) const;
-  Status check_place(const std::string& path) const;
   std::optional<Entry> entry_of(const std::string& id) const;
+  MeshPtr known_mesh(const std::string& id) const;
   bool has_room(const Entry& before);
   Result<MeshPtr> load(const std::string& id, const Entry& before) const;
   Result<MeshPtr> refresh(const std::string& id, const FileStamp& stamp);
@@ -70,6 +74,7 @@ class MeshStore {
 
   const std::string root_;  // canonical
   const std::chrono::milliseconds rescan_interval_;
+  const std::chrono::milliseconds look_interval_;
   const std::size_t most_meshes_;
 
   mutable std::shared_mutex mutex_;  // guards the three below

@@ -81,6 +81,16 @@ fetch_all() {
   rm "$work/fetched.pmesh"
 }
 
+# fetch_formats URL: a fetched mesh file is the extracted one in every format.
+fetch_formats() {
+  local ending
+  for ending in obj glb drc; do
+    "$pmesh" extract "$file" --ratio 0.5 -o "$work/extracted.$ending" 2>/dev/null
+    "$pmesh" fetch "$1" --ratio 0.5 -o "$work/fetched.$ending" --quiet 2>/dev/null
+    same "$work/fetched.$ending" "$work/extracted.$ending" "$1"
+  done
+}
+
 # A prefix fetched for a coarse wish is continued, and becomes the file.
 continue_prefix() {
   "$pmesh" fetch "http://$http/mesh" --ratio 0.3 -o "$work/grown.pmesh" --json >/dev/null 2>&1
@@ -102,5 +112,6 @@ fetch_all "$file"
 start_server "$work/assets"
 fetch_all "http://$http/mesh"
 fetch_all "tcp://$tcp/mesh"
+fetch_formats "http://$http/mesh"
 continue_prefix
 stop_server

@@ -197,6 +197,15 @@ TEST_F(FetchToFile, SaysToRunAgainAfterALostConnection) {
   EXPECT_FALSE(says(fetch("", "new.pmesh"), "run again to continue")) << "there is nothing yet";
 }
 
+TEST_F(FetchToFile, SaysToRunAgainAfterTheFileOfAMeshWasReplaced) {
+  transport_.cut_after = [this] {
+    const bool is_first = transport_.reads.size() == 1;
+    if (!is_first) transport_.file = other_file();
+    return is_first ? 12'000u : 100'000u;
+  };
+  EXPECT_TRUE(says(fetch("", "out.ply"), "; run again to fetch the new one"));
+}
+
 TEST_F(FetchToFile, SaysHowToStartOverAfterTheRemoteWasReplaced) {
   transport_.cut_after = [this] {
     const bool is_first = transport_.reads.size() == 1;

@@ -1,10 +1,14 @@
 // The client against web hosts on the loopback, good and bad.
+#include <algorithm>
+#include <chrono>
+
 #include <gtest/gtest.h>
 
 #include "tests/client/fetched.h"
 #include "tests/client/loopback.h"
 #include "tests/client/sample.h"
 #include "tests/client/scripted_transport.h"
+#include "tests/fixtures/shapes.h"
 
 namespace pmesh {
 namespace {
@@ -89,7 +93,7 @@ TEST(HttpTransport, GivesUpOnAHostThatStaysBusy) {
 
 TEST(HttpTransport, LeavesAStalledResponseAndAsksAgain) {
   HttpHost host(sample_file(), {.stalls = 2});
-  const Fetched fetched(host.url(), "", kImpatient);
+  const Fetched fetched(host.url(), "", {.idle_timeout = kImpatient});
   EXPECT_EQ(fetched.error(), "");
   EXPECT_TRUE(fetched.is_sample());
 }
@@ -97,7 +101,8 @@ TEST(HttpTransport, LeavesAStalledResponseAndAsksAgain) {
 TEST(HttpTransport, GivesUpOnAHostThatStallsForEver) {
   HttpHost host({},
                 {.stalls = 100, .raw_answer = "HTTP/1.1 206 Partial Content\r\nContent-Length"});
-  EXPECT_NE(Fetched(host.url(), "", kImpatient).error().find("gave up"), std::string::npos);
+  EXPECT_NE(Fetched(host.url(), "", {.idle_timeout = kImpatient}).error().find("gave up"),
+            std::string::npos);
 }
 
 TEST(HttpTransport, NoticesWrongBytes) {
@@ -152,6 +157,113 @@ TEST(HttpTransport, TakesWhatAPartialFileHolds) {
   const Fetched fetched(host.url());
   EXPECT_EQ(fetched.error(), "");
   EXPECT_EQ(fetched.client.prefix().chunk_count(), 2u);
+}
+
+// As many bytes as make it worth asking twice for a range.
+const Bytes& long_file() {
+  static const Bytes file = test::make_pm_file(shapes::bumped(shapes::icosphere(6), 0.05));
+  return file;
+}
+
+// Cuts one response late: what is fetched then begins far behind the file's start.
+std::function<std::size_t()> late_cut(int response) {
+  return [=, responses = 0]() mutable {
+    return ++responses == response ? std::size_t(150'000) : SIZE_MAX;
+  };
+}
+
+TEST(HttpTransport, AsksOnceMoreForARangeThatWasIgnored) {
+  for (const char* target : {"/mesh", "/mesh.pmesh"}) {
+    HttpHost host(long_file(), {.ignored_ranges = 1, .cut_after = random_cuts(1, 150'000)});
+    const Fetched fetched(host.url(target));
+    EXPECT_EQ(fetched.error(), "") << target;
+    EXPECT_TRUE(std::ranges::equal(fetched.client.prefix().verified(), long_file())) << target;
+    EXPECT_LT(fetched.client.bytes_fetched(), long_file().size() + 80'000) << target;
+  }
+}
+
+TEST(HttpTransport, TakesChunksOfAServerBehindACacheThatIgnoresRanges) {
+  HttpHost host(long_file(), {.ignores_ranges = true, .cut_after = late_cut(2)});
+  const Fetched fetched(host.url("/mesh"));
+  EXPECT_EQ(fetched.error(), "");
+  EXPECT_TRUE(std::ranges::equal(fetched.client.prefix().verified(), long_file()));
+  EXPECT_NE(host.targets().back().find("/c/"), std::string::npos);
+}
+
+TEST(HttpTransport, TakesTheWholeFileWhereThereAreNeitherRangesNorChunks) {
+  for (const auto& [target, response] : {std::pair("/mesh", 2), std::pair("/mesh.pmesh", 1)}) {
+    HttpHost host(long_file(),
+                  {.ignores_ranges = true, .has_chunks = false, .cut_after = late_cut(response)});
+    const Fetched fetched(host.url(target));
+    EXPECT_EQ(fetched.error(), "") << target;
+    EXPECT_TRUE(std::ranges::equal(fetched.client.prefix().verified(), long_file())) << target;
+  }
+}
+
+TEST(HttpTransport, AsksForTheNameOnlyOnce) {
+  HttpHost host(sample_file(), {.cut_after = random_cuts(2, 9000)});
+  const Fetched fetched(host.url("/mesh"));
+  EXPECT_EQ(fetched.error(), "");
+  EXPECT_EQ(fetched.client.bytes_fetched(), sample_file().size());
+  EXPECT_EQ(host.targets().back().find("/mesh/"), 0u);
+  const auto whole = std::ranges::find_if(
+      host.targets(), [](const std::string& target) { return target.starts_with("/mesh/"); });
+  EXPECT_EQ(std::find(whole, host.targets().end(), "/mesh"), host.targets().end());
+}
+
+TEST(HttpTransport, SaysThatTheFileWasReplacedMeanwhile) {
+  HttpHost host(sample_file(), {.cut_after = random_cuts(5, 20'000),
+                                .replacement = test::other_file(),
+                                .requests_until_replaced = 2});
+  const Fetched fetched(host.url("/mesh"));
+  EXPECT_NE(fetched.error().find("another"), std::string::npos) << fetched.error();
+  EXPECT_EQ(fetched.client.remedy(), Remedy::start_over);
+}
+
+TEST(HttpTransport, TakesTheNewFileIfItWasReplacedBeforeItsFirstByte) {
+  HttpHost host(sample_file(), {.replacement = test::other_file(), .requests_until_replaced = 1});
+  const Fetched fetched(host.url("/mesh"));
+  EXPECT_EQ(fetched.error(), "");
+  EXPECT_TRUE(std::ranges::equal(fetched.client.prefix().verified(), test::other_file()));
+}
+
+TEST(HttpTransport, WaitsAsLongAsABusyHostAsks) {
+  HttpHost host(sample_file(), {.failures = 1, .extra_header = "Retry-After: 1\r\n"});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(Fetched(host.url()).error(), "");
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(990));
+}
+
+TEST(HttpTransport, ShowsItselfInEveryRequest) {
+  for (const char* target : {"/mesh", "/mesh.pmesh"}) {
+    HttpHost host(sample_file(), {});
+    const Fetched fetched(host.url(target), "faces=5000",
+                          {.token = "t", .http_fields = {{"X-Other", "1"}}});
+    EXPECT_EQ(fetched.error(), "") << target;
+    for (const std::string& request : host.requests()) {
+      EXPECT_NE(request.find("Authorization: Bearer t\r\nX-Other: 1\r\n"), std::string::npos);
+    }
+  }
+}
+
+TEST(HttpTransport, CarriesAMeshsQueryToEveryRequest) {
+  HttpHost host(sample_file(), {});
+  const Fetched fetched(host.url("/mesh?expires=9&signature=ab"), "faces=5000");
+  EXPECT_EQ(fetched.error(), "");
+  const std::string hash = to_hex(sample_index().header.content_hash);
+  EXPECT_EQ(host.targets(), (std::vector<std::string>{
+                                "/mesh?expires=9&signature=ab",
+                                "/mesh/" + hash + ".pmesh?faces=5000&expires=9&signature=ab"}));
+}
+
+TEST(HttpTransport, SaysThatItIsNotLetIn) {
+  for (const char* status : {"401 Unauthorized", "403 Forbidden"}) {
+    HttpHost host(
+        {}, {.raw_answer = std::string("HTTP/1.1 ") + status + "\r\nContent-Length: 0\r\n\r\n"});
+    const Fetched fetched(host.url());
+    EXPECT_NE(fetched.error().find("token"), std::string::npos);
+    EXPECT_TRUE(fetched.retries.empty());
+  }
 }
 
 TEST(HttpTransport, SaysThatNobodyListens) {

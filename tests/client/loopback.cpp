@@ -12,11 +12,22 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "core/pm/format.h"
+#include "protocol/catalogue_json.h"
+#include "protocol/routes.h"
+
 namespace pmesh::test {
 namespace {
 
 // A peer silent for so long has hung: only tests that fail wait for it.
 constexpr int kPatienceMilliseconds = 10'000;
+
+// Nothing at all for the status 0.
+std::string empty_response(int status, const std::string& fields) {
+  if (status == 0) return "";
+  return "HTTP/1.1 " + std::to_string(status) + " Status\r\n" + fields +
+         "Content-Length: 0\r\n\r\n";
+}
 
 sockaddr_in loopback_address(std::uint16_t port) {
   sockaddr_in address{};
@@ -26,6 +37,8 @@ sockaddr_in loopback_address(std::uint16_t port) {
   return address;
 }
 
+}  // namespace
+
 int connect_to(std::uint16_t port) {
   const sockaddr_in address = loopback_address(port);
   const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -34,8 +47,6 @@ int connect_to(std::uint16_t port) {
   }
   return descriptor;
 }
-
-}  // namespace
 
 Peer::~Peer() { ::close(descriptor_); }
 
@@ -87,14 +98,8 @@ void LoopbackServer::run() {
   }
 }
 
-CuttingProxy::CuttingProxy(std::uint16_t server_port, std::function<std::size_t()> cut_after)
-    : server_port_(server_port),
-      cut_after_(std::move(cut_after)),
-      server_([this](Peer& client) { serve(client); }) {}
-
-void CuttingProxy::serve(Peer& client) {
-  Peer server(connect_to(server_port_));
-  std::size_t allowed = cut_after_();
+void pass(Peer& client, std::uint16_t server_port, std::size_t allowed) {
+  Peer server(connect_to(server_port));
   pollfd ends[] = {{client.descriptor(), POLLIN, 0}, {server.descriptor(), POLLIN, 0}};
   while (::poll(ends, 2, kPatienceMilliseconds) > 0) {
     if (ends[0].revents != 0) {
@@ -112,12 +117,32 @@ void CuttingProxy::serve(Peer& client) {
 }
 
 HttpHost::HttpHost(Bytes file, HttpBehaviour behaviour)
-    : file_(std::move(file)),
-      behaviour_(std::move(behaviour)),
-      server_([this](Peer& peer) { serve(peer); }) {}
+    : behaviour_(std::move(behaviour)), server_([this](Peer& peer) { serve(peer); }) {
+  put(std::move(file));
+}
 
-std::string HttpHost::url() const {
-  return "http://127.0.0.1:" + std::to_string(server_.port()) + "/mesh.pmesh";
+// All that is to be had of `file`; of what is no PM file, only the file itself.
+void HttpHost::put(Bytes file) {
+  files_.clear();
+  if (const auto index = parse_prologue(file); index && *index) {
+    const std::string json = mesh_info_json({"mesh", &**index});
+    const ContentHash& hash = (*index)->header.content_hash;
+    hashed_target_ = file_target("mesh", hash);
+    files_["/mesh"] = Bytes(json.begin(), json.end());
+    files_[hashed_target_] = file;
+    std::uint64_t number = 0;
+    for (const ChunkRow& chunk : (*index)->chunks) {
+      const auto begin = file.begin() + static_cast<std::ptrdiff_t>(chunk.offset);
+      if (chunk.end() > file.size() || !behaviour_.has_chunks) break;
+      files_[chunk_target("mesh", hash, number++)] =
+          Bytes(begin, begin + static_cast<std::ptrdiff_t>(chunk.bytes));
+    }
+  }
+  files_["/mesh.pmesh"] = std::move(file);
+}
+
+std::string HttpHost::url(const std::string& target) const {
+  return "http://127.0.0.1:" + std::to_string(port()) + target;
 }
 
 void HttpHost::serve(Peer& peer) {
@@ -145,38 +170,51 @@ bool HttpHost::answer(Peer& peer, const std::string& request) {
       return false;
     }
   }
-  return peer.send(as_bytes(response)) && behaviour_.raw_answer.empty();
+  const bool goes_on = !response.empty() && behaviour_.raw_answer.empty();
+  return peer.send(as_bytes(response)) && goes_on;
 }
 
 std::string HttpHost::response_to(const std::string& request) {
-  unsigned long long first = 0;
-  unsigned long long last = file_.size() - 1;
   const std::size_t header = request.find("Range: ");
   const bool has_range = header != std::string::npos;
+  requests_.push_back(request);
   ranges_.push_back(has_range ? request.substr(header + 7, request.find('\r', header) - header - 7)
                               : "");
-  if (!request.starts_with("GET /mesh.pmesh ")) {
-    return "HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n";
+  targets_.push_back(request.substr(4, request.find(' ', 4) - 4));
+  const std::string target = targets_.back().substr(0, targets_.back().find('?'));
+  if (target == hashed_target_ && behaviour_.requests_until_replaced > 0 &&
+      --behaviour_.requests_until_replaced == 0) {
+    put(behaviour_.replacement);
   }
+  if (target == "/mesh/stream") return empty_response(behaviour_.upgrade_status, "");
+  const auto file = files_.find(target);
+  if (file == files_.end()) return empty_response(404, "");
   if (behaviour_.failures > 0) {
     --behaviour_.failures;
-    return "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\n\r\n";
+    return empty_response(503, behaviour_.extra_header);
   }
+  return file_response(file->second, ranges_.back());
+}
+
+std::string HttpHost::file_response(const Bytes& file, const std::string& range) {
+  unsigned long long first = 0;
+  unsigned long long last = file.size() - 1;
+  const bool is_ignored = behaviour_.ignored_ranges > 0 && !range.starts_with("bytes=0-");
+  if (is_ignored) --behaviour_.ignored_ranges;
   std::string head = "HTTP/1.1 200 OK\r\n";
-  if (has_range && !behaviour_.ignores_ranges) {
-    std::sscanf(ranges_.back().c_str(), "bytes=%llu-%llu", &first, &last);
-    const std::string total = std::to_string(file_.size());
-    if (first >= file_.size()) {
-      return "HTTP/1.1 416 Range Not Satisfiable\r\nContent-Range: bytes */" + total +
-             "\r\nContent-Length: 0\r\n\r\n";
+  if (!range.empty() && !behaviour_.ignores_ranges && !is_ignored) {
+    std::sscanf(range.c_str(), "bytes=%llu-%llu", &first, &last);
+    const std::string total = std::to_string(file.size());
+    if (first >= file.size()) {
+      return empty_response(416, "Content-Range: bytes */" + total + "\r\n");
     }
-    last = std::min<unsigned long long>(last, file_.size() - 1);
+    last = std::min<unsigned long long>(last, file.size() - 1);
     head = "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes " + std::to_string(first) + "-" +
            std::to_string(last) + "/" + total + "\r\n";
   }
   head += behaviour_.extra_header;
-  std::string body(file_.begin() + static_cast<long>(first),
-                   file_.begin() + static_cast<long>(last) + 1);
+  std::string body(file.begin() + static_cast<long>(first),
+                   file.begin() + static_cast<long>(last) + 1);
   if (!behaviour_.chunked) {
     return head + "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
   }

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,7 +14,10 @@
 
 namespace pmesh::test {
 
-/// A connection that a server has accepted.
+/// The descriptor of a connection to a server on the loopback.
+int connect_to(std::uint16_t port);
+
+/// The other end of a connection.
 class Peer {
  public:
   explicit Peer(int descriptor) : descriptor_(descriptor) {}
@@ -22,9 +25,9 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// What comes within ten seconds; nothing if the client is gone.
+  /// What comes within ten seconds; nothing if the other end is gone.
   Bytes receive();
-  /// Sends `bytes`; false if the client is gone.
+  /// Sends `bytes`; false if the other end is gone.
   bool send(ByteView bytes);
   int descriptor() const { return descriptor_; }
 
@@ -53,25 +56,27 @@ class LoopbackServer {
   std::thread thread_;
 };
 
+/// Passes bytes between `client` and a server on the loopback until one of them ends, or the server
+/// has sent so many bytes.
+void pass(Peer& client, std::uint16_t server_port, std::size_t allowed = SIZE_MAX);
+
 /// Passes bytes between its clients and a server on the loopback, and cuts every connection after
 /// so many bytes from the server.
 class CuttingProxy {
  public:
-  CuttingProxy(std::uint16_t server_port, std::function<std::size_t()> cut_after);
+  CuttingProxy(std::uint16_t server_port, std::function<std::size_t()> cut_after)
+      : server_([=](Peer& client) { pass(client, server_port, cut_after()); }) {}
   std::uint16_t port() const { return server_.port(); }
-  int connections() const { return server_.connections(); }
 
  private:
-  void serve(Peer& client);
-
-  std::uint16_t server_port_;
-  std::function<std::size_t()> cut_after_;
   LoopbackServer server_;
 };
 
 /// How an HTTP host behaves; by default as a good one.
 struct HttpBehaviour {
   bool ignores_ranges = false;               ///< Answers 200 with the whole file.
+  int ignored_ranges = 0;                    ///< So many ranges after the first are ignored.
+  bool has_chunks = true;                    ///< Else the chunks' routes are not found.
   bool keeps_alive = true;                   ///< Else it closes after every response.
   bool chunked = false;                      ///< Sends bodies in chunks, without a length.
   int failures = 0;                          ///< So many 503 first.
@@ -79,25 +84,39 @@ struct HttpBehaviour {
   int stalls = 0;                            ///< So many responses stop after half of their bytes.
   std::string raw_answer{};                  ///< If set: sent instead of any response.
   std::string extra_header{};                ///< A line, with its end.
+  int upgrade_status = 404;                  ///< To /mesh/stream; 0 ends the connection.
+  /// If set: takes the file's place when its hashed name has been asked for so often.
+  Bytes replacement{};
+  int requests_until_replaced = 0;
 };
 
-/// A plain web host with one file at /mesh.pmesh.
+/// A web host with one file at /mesh.pmesh, which it serves as a pmesh server too: at /mesh, with
+/// hashed file and chunks. Queries are ignored.
 class HttpHost {
  public:
   HttpHost(Bytes file, HttpBehaviour behaviour);
-  std::string url() const;
+  std::string url(const std::string& target = "/mesh.pmesh") const;
+  std::uint16_t port() const { return server_.port(); }
   /// The Range headers of the requests so far, "" where there was none.
   const std::vector<std::string>& ranges() const { return ranges_; }
+  /// The targets of the requests so far, and their whole heads.
+  const std::vector<std::string>& targets() const { return targets_; }
+  const std::vector<std::string>& requests() const { return requests_; }
   int connections() const { return server_.connections(); }
 
  private:
   void serve(Peer& peer);
   bool answer(Peer& peer, const std::string& request);
   std::string response_to(const std::string& request);
+  std::string file_response(const Bytes& file, const std::string& range);
+  void put(Bytes file);
 
-  Bytes file_;
+  std::map<std::string, Bytes> files_;  // by target
+  std::string hashed_target_;
   HttpBehaviour behaviour_;
   std::vector<std::string> ranges_;
+  std::vector<std::string> targets_;
+  std::vector<std::string> requests_;
   LoopbackServer server_;
 };
 

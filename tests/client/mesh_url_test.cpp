@@ -40,6 +40,33 @@ TEST(MeshUrl, NamesAMeshOfTheFrameProtocol) {
   EXPECT_EQ(mesh.id, "scans~bunny");
 }
 
+TEST(MeshUrl, NamesAMeshByWebSocketAsByHttp) {
+  const auto mesh = parsed<WebSocketMesh>("ws://example.org/scans/bunny").mesh;
+  EXPECT_EQ(mesh.endpoint.text(), "example.org:80");
+  EXPECT_EQ(mesh.prefix, "/scans");
+  EXPECT_EQ(mesh.id, "bunny");
+  EXPECT_FALSE(mesh.endpoint.is_secure);
+}
+
+TEST(MeshUrl, KnowsItsSchemesWithTls) {
+  const auto https = parsed<HttpMesh>("https://h/bunny").endpoint;
+  EXPECT_EQ(https.text(), "h:443");
+  EXPECT_TRUE(https.is_secure);
+  EXPECT_TRUE(parsed<HttpFile>("https://h/b.pmesh").endpoint.is_secure);
+  EXPECT_EQ(parsed<WebSocketMesh>("wss://h/bunny").mesh.endpoint.text(), "h:443");
+  EXPECT_TRUE(parsed<WebSocketMesh>("wss://h:9/bunny").mesh.endpoint.is_secure);
+  EXPECT_TRUE(parsed<TcpMesh>("tcps://h:9/bunny").endpoint.is_secure);
+}
+
+TEST(MeshUrl, KeepsTheQueryOfASignedUrl) {
+  const auto mesh = parsed<HttpMesh>("http://h/bunny?expires=9&signature=ab-_");
+  EXPECT_EQ(mesh.id, "bunny");
+  EXPECT_EQ(mesh.query, "expires=9&signature=ab-_");
+  EXPECT_EQ(parsed<WebSocketMesh>("ws://h/bunny?a=b").mesh.query, "a=b");
+  EXPECT_EQ(parsed<TcpMesh>("tcp://h:1/bunny?a=b").query, "a=b");
+  EXPECT_EQ(parsed<HttpMesh>("http://h/bunny?").query, "");
+}
+
 TEST(MeshUrl, TakesASchemeInAnyCase) {
   EXPECT_EQ(parsed<HttpMesh>("HTTP://h/bunny").id, "bunny");
   EXPECT_EQ(parsed<TcpMesh>("Tcp://h:1/bunny").id, "bunny");
@@ -58,7 +85,12 @@ TEST(MeshUrl, TakesAnythingWithoutASchemeAsAPath) {
 TEST(MeshUrl, RefusesWhatItCannotMean) {
   for (const char* text : {"",
                            "ftp://h/b.pmesh",
-                           "https://h/b",
+                           "httpss://h/b",
+                           "ws://h/b.pmesh/",
+                           "ws://h/?b",
+                           "ws://h/b?ratio=1",
+                           "wss://h/b?a=1&bytes=2",
+                           "tcps://h/bunny",
                            "http://",
                            "http:///b",
                            "http://h",

@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <utility>
 
-#include "protocol/apply_wish.h"
 #include "core/decimate/decimate.h"
 #include "core/io/export.h"
 #include "core/mesh/half_edge_mesh.h"
@@ -12,6 +11,7 @@
 #include "core/pm/base_codec.h"
 #include "core/pm/encoder.h"
 #include "core/pm/stream_decoder.h"
+#include "protocol/apply_wish.h"
 #include "tests/fixtures/measured.h"
 #include "tests/fixtures/shapes.h"
 
@@ -53,7 +53,7 @@ LodRequest wish(const char* query) { return *parse_wish(query); }
 Bytes extracted(const Bytes& pm, const LodRequest& wish) {
   StreamDecoder decoder(decode_base);
   if (!decoder.feed(pm) || !apply_wish(wish, decoder.index(), decoder.mesh())) std::abort();
-  return format_mesh(MeshFormat::ply, decoder.mesh().snapshot(), decoder.index().header.lattice);
+  return *format_mesh(ExportFormat::ply, decoder.mesh().snapshot(), decoder.index().header.lattice);
 }
 
 }  // namespace pmesh::test

@@ -1,6 +1,7 @@
 // The client against the real server, over HTTP and TCP, with and without cuts on the way.
 #include "server/server.h"
 
+#include <chrono>
 #include <filesystem>
 #include <thread>
 
@@ -157,6 +158,7 @@ TEST_F(RealServer, RefusesToContinueAFileThatWasReplaced) {
     write(path("served/sample.pmesh"), test::sample_file());
     ASSERT_TRUE(fetch(url, "faces=500", path("old.pmesh")).ok());
     write(path("served/sample.pmesh"), test::other_file());
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // names are looked at now and then
     const Result<FetchReport> report = fetch(url, "", path("old.pmesh"));
     ASSERT_FALSE(report.ok()) << url;
     EXPECT_NE(report.error().message.find("another"), std::string::npos) << report.error().message;

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/apply_wish.h"
 #include "core/io/export.h"
 #include "core/pm/digest.h"
+#include "protocol/apply_wish.h"
 #include "tests/client/sample.h"
 #include "tests/client/scripted_transport.h"
 
@@ -28,7 +28,7 @@ StreamOptions impatient() {
 Bytes ply_of(StreamingClient& client, const LodRequest& wish) {
   const FileIndex& index = *client.prefix().index();
   EXPECT_TRUE(apply_wish(wish, index, client.mesh()).ok());
-  return format_mesh(MeshFormat::ply, client.mesh().snapshot(), index.header.lattice);
+  return *format_mesh(ExportFormat::ply, client.mesh().snapshot(), index.header.lattice);
 }
 
 TEST(StreamingClient, GivesWhatAnExtractGives) {
@@ -146,6 +146,44 @@ TEST(StreamingClient, KeepsWhatCameBeforeAFailure) {
   EXPECT_EQ(status.error().code, ErrorCode::verification);
   EXPECT_EQ(client.prefix().chunk_count(), 1u);
   EXPECT_EQ(client.mesh().face_count(), sample_index().chunks[0].faces);
+}
+
+TEST(StreamingClient, FetchesADamagedSectionOnceMore) {
+  for (const std::size_t section : {0u, 1u, 2u}) {
+    ScriptedTransport transport(sample_file());
+    const std::uint64_t begin = sample_index().chunks[section].offset;
+    transport.file[begin + 9] ^= 1;
+    transport.cut_after = [] { return std::size_t(700); };  // so it is pieced together
+    StreamOptions options = impatient();
+    options.on_retry = [&](const Error& error) {
+      if (error.code == ErrorCode::verification) transport.file = sample_file();
+    };
+    StreamingClient client(transport, options);
+    ASSERT_TRUE(client.fetch(wish("")).ok()) << section;
+    EXPECT_EQ(ply_of(client, wish("")), extracted(sample_file(), wish("")));
+    const std::uint64_t twice = sample_index().chunks[section].bytes + 700;  // and a block's rest
+    EXPECT_LE(client.bytes_fetched(), sample_file().size() + twice + 40 * transport.opens);
+  }
+}
+
+TEST(StreamingClient, FetchesADamagedHeaderOnceMore) {
+  ScriptedTransport transport(sample_file());
+  transport.file[50] ^= 1;
+  StreamOptions options = impatient();
+  options.on_retry = [&](const Error&) { transport.file = sample_file(); };
+  StreamingClient client(transport, options);
+  EXPECT_TRUE(client.fetch(wish("")).ok());
+}
+
+TEST(StreamingClient, FetchesASectionThatStaysDamagedNoThirdTime) {
+  ScriptedTransport transport(sample_file());
+  transport.file[sample_index().chunks[1].offset + 9] ^= 1;
+  int retries = 0;
+  StreamOptions options = impatient();
+  options.on_retry = [&](const Error&) { ++retries; };
+  StreamingClient client(transport, options);
+  EXPECT_EQ(client.fetch(wish("")).error().code, ErrorCode::verification);
+  EXPECT_EQ(retries, 1);
 }
 
 TEST(StreamingClient, DoesNotBelieveCountsThatOnlyTheirDigestsBear) {

@@ -64,6 +64,21 @@ TEST(FrameParser, AsksForMoreInsideAFrame) {
   EXPECT_TRUE(parser.inside_frame());
 }
 
+TEST(FrameParser, ShowsAFrameUnderWay) {
+  const Bytes bytes = encode_frame(FrameType::data, 3, Bytes{1, 2, 3});
+  FrameParser parser;
+  ByteView header = ByteView(bytes).first(7);
+  parser.feed(header);
+  EXPECT_EQ(parser.unfinished(), nullptr);
+  ByteView more = ByteView(bytes).subspan(7, 3);
+  parser.feed(more);
+  ASSERT_NE(parser.unfinished(), nullptr);
+  EXPECT_EQ(*parser.unfinished(), (Frame{FrameType::data, 3, {1, 2}}));
+  ByteView rest = ByteView(bytes).subspan(10);
+  parser.feed(rest);
+  EXPECT_EQ(parser.unfinished(), nullptr);
+}
+
 TEST(FrameParser, TakesTheLargestPayload) {
   const Bytes frame = encode_frame(FrameType::data, 1, Bytes(kMaxFramePayload));
   EXPECT_EQ(parse_in_pieces(frame, 65536).size(), 1u);

@@ -47,15 +47,41 @@ TEST(Routes, DecodesPercentEscapesAfterCuttingThePath) {
 
 TEST(Routes, TakesTheAbsoluteForm) {
   EXPECT_EQ(route("http://host:8080/catalog"), Route(CatalogRoute{}));
-  EXPECT_EQ(route("http://host"), Route(UnknownRoute{}));
+  EXPECT_EQ(route("http://host"), Route(ViewerRoute{}));
   EXPECT_EQ(route("HTTP://host/catalog"), Route(CatalogRoute{}));
   EXPECT_EQ(route("Https://host/catalog"), Route(CatalogRoute{}));
 }
 
 TEST(Routes, DoesNotKnowOtherPaths) {
-  for (const char* target : {"/", "//", "//catalog", "/catalog/", "/./catalog", "/../etc/passwd",
-                             "/bunny/", "/bunny/c/1", "/a/b/c/d/e/f/g", "/metrics", "/bunny//"}) {
+  for (const char* target :
+       {"//", "//catalog", "/catalog/", "/./catalog", "/../etc/passwd", "/bunny/", "/bunny/c/1",
+        "/a/b/c/d/e/f/g", "/metrics/", "/bunny//", "/view", "/view/", "/view/../x", "/view/bunny/x",
+        "/bunny/lod.exe", "/bunny/lod.", "/bunny/stream/", "/catalog/lod.glb", "/assets/x.js"}) {
     EXPECT_EQ(route(target), Route(UnknownRoute{})) << target;
+  }
+}
+
+TEST(Routes, KnowsPagesAndOperation) {
+  EXPECT_EQ(route("/"), Route(ViewerRoute{}));
+  EXPECT_EQ(route("/view/scans~bunny"), Route(ViewerRoute{"scans~bunny"}));
+  EXPECT_EQ(route("/metrics"), Route(MetricsRoute{}));
+  EXPECT_EQ(route("/openapi.json?x"), Route(OpenapiRoute{}));
+  EXPECT_EQ(route("/bunny/stream"), Route(StreamRoute{"bunny"}));
+}
+
+TEST(Routes, ReadsFinishedLevels) {
+  const LodRequest faces = parse_wish("faces=100").value();
+  EXPECT_EQ(route("/bunny/lod.ply"), Route(LodRoute{"bunny", LodFormat::ply, {}}));
+  for (const char* query : {"faces=100&draco=1", "draco=1&faces=100", "%66aces=100&draco=1"}) {
+    EXPECT_EQ(route(std::string("/bunny/lod.glb?") + query),
+              Route(LodRoute{"bunny", LodFormat::glb_draco, faces}))
+        << query;
+  }
+  EXPECT_EQ(route("/bunny/lod.glb?draco=0"), Route(LodRoute{"bunny", LodFormat::glb, {}}));
+  EXPECT_EQ(route("/bunny/lod.glb?draco=1"), Route(LodRoute{"bunny", LodFormat::glb_draco, {}}));
+  for (const char* query :
+       {"draco=", "draco=2", "draco=1&draco=1", "faces=1&faces=2", "x=1", "faces=100&", "%zz"}) {
+    EXPECT_FALSE(parse_target(std::string("/bunny/lod.glb?") + query).ok()) << query;
   }
 }
 
@@ -102,6 +128,7 @@ TEST(Routes, WritesTheTargetItReads) {
   const LodRequest wish{.kind = WishKind::ratio, .ratio = 0.25};
   EXPECT_EQ(file_target("bunny", kHashBytes, wish), hashed("/bunny/", ".pmesh?ratio=0.25"));
   EXPECT_EQ(file_target("bunny", kHashBytes), hashed("/bunny/", ".pmesh"));
+  EXPECT_EQ(chunk_target("bunny", kHashBytes, 7), hashed("/bunny/", "/c/7"));
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ TEST(Specification, ExampleFramesAreWhatTheCodeWrites) {
       {"data", encode_data(1, {0, ByteView(kMagic)})},
       {"done", encode_done(1, {.end = 16384, .faces = 1000, .vertices = 502, .reached = true})},
       {"pause", encode_empty(FrameType::pause, 1)},
+      {"authorise", encode_authorise("token")},
       {"failure", encode_failure(1, {FailureCode::not_found, "no such mesh"})},
   };
   EXPECT_EQ(example_frames(), expected);

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/fixtures/temporary_directory.h"
 #include "tests/server/captured_log.h"
 #include "tests/server/descriptor_limit.h"
+#include "tests/server/http_site.h"
 #include "tests/server/sample_file.h"
 
 namespace pmesh {
@@ -23,14 +23,13 @@ class HttpAnswerTest : public ::testing::Test {
   void SetUp() override {
     directory_.write("bunny.pmesh", bunny_.bytes);
     directory_.write("measured.pmesh", measured_.bytes);
-    store_ = MeshStore::open(directory_ / "", std::chrono::milliseconds(0)).value();
   }
 
   HttpAnswer get(const std::string& target, HttpRequest request = {}) {
     target_ = target;
     request.target = target_;
     if (request.method.empty()) request.method = "GET";
-    return answer_http(request, *store_);
+    return answer_http(request, site_.context());
   }
 
   std::string file(const std::string& query = "") const {
@@ -47,8 +46,8 @@ class HttpAnswerTest : public ::testing::Test {
   const SampleFile bunny_ = make_sample();
   const SampleFile measured_ = make_measured_sample();
   const std::uint64_t size_ = bunny_.bytes.size();
-  TemporaryDirectory directory_;
-  std::unique_ptr<MeshStore> store_;
+  testing::HttpSite site_;
+  const TemporaryDirectory& directory_ = site_.directory();
   std::string target_;
 };
 
@@ -94,7 +93,7 @@ TEST_F(HttpAnswerTest, FileIsWholeAndForEver) {
 TEST_F(HttpAnswerTest, UnknownNamesAndHashesAreNotFound) {
   const std::string other(32, '0');
   for (const std::string& target :
-       {std::string("/"), std::string("/nobody"), "/bunny/" + other + ".pmesh",
+       {std::string("//"), std::string("/nobody"), "/bunny/" + other + ".pmesh",
         "/nobody/" + bunny_.hash() + ".pmesh", "/bunny/" + other + "/c/0",
         "/bunny/" + bunny_.hash() + "/c/3", std::string("/../bunny"), std::string("/bunny/")}) {
     EXPECT_EQ(get(target).status, 404) << target;
@@ -236,17 +235,13 @@ TEST_F(HttpAnswerTest, MalformedTargetsAreBadRequests) {
   EXPECT_EQ(get("catalog").status, 400);
 }
 
-TEST_F(HttpAnswerTest, LongTargetsAreRefused) {
-  EXPECT_EQ(get("/" + std::string(kMaxTargetBytes, 'a')).status, 414);
-}
-
 TEST_F(HttpAnswerTest, EveryAnswerMayBeReadByOtherOrigins) {
   for (const std::string& target : {file(), std::string("/catalog"), std::string("/nobody"),
                                     std::string("/%"), std::string("/health")}) {
-    const HttpAnswer answer = get(target);
-    EXPECT_EQ(answer.fields.find("Access-Control-Allow-Origin"), "*") << target;
-    EXPECT_NE(answer.fields.find("Access-Control-Expose-Headers").find("Content-Range"),
-              std::string::npos);
+    const std::string head = head_text(get(target), "today", true);
+    EXPECT_NE(head.find("\r\nAccess-Control-Allow-Origin: *\r\n"), std::string::npos) << target;
+    const std::size_t exposed = head.find("\r\nAccess-Control-Expose-Headers: ");
+    EXPECT_LT(head.find("Content-Range", exposed), head.find("\r\n", exposed + 2));
   }
 }
 
@@ -286,11 +281,156 @@ TEST_F(HttpAnswerTest, HeadTextIsTheWholeHead) {
   answer.status = 206;
   answer.fields.add("ETag", "\"x\"");
   answer.text = "abc";
-  EXPECT_EQ(head_text(answer, "today", true),
-            "HTTP/1.1 206 Partial Content\r\nDate: today\r\nETag: \"x\"\r\nContent-Length: 3\r\n"
-            "Connection: keep-alive\r\n\r\n");
+  const std::string head = head_text(answer, "today", true);
+  EXPECT_TRUE(head.starts_with("HTTP/1.1 206 Partial Content\r\nDate: today\r\n"));
+  EXPECT_TRUE(
+      head.ends_with("\r\nETag: \"x\"\r\nContent-Length: 3\r\nConnection: keep-alive\r\n\r\n"));
   answer.status = 304;
-  EXPECT_EQ(head_text(answer, "today", false).find("Content-Length"), std::string::npos);
+  EXPECT_EQ(head_text(answer, "today", false).find("Content-Length: "), std::string::npos);
+}
+
+TEST_F(HttpAnswerTest, ManyRangesAreRefused) {
+  EXPECT_EQ(get(file(), {.range = "bytes=0-1,2-3,4-5,6-7,8-9,10-11,12-13,14-15"}).status, 200);
+  const HttpAnswer answer =
+      get(file(), {.range = "bytes=0-1,2-3,4-5,6-7,8-9,10-11,12-13,14-15,16-17"});
+  EXPECT_EQ(answer.status, 416);
+  EXPECT_EQ(answer.limit, LimitName::ranges);
+}
+
+TEST_F(HttpAnswerTest, FinishedLevelsAreAJobBeforeTheyAreAnAnswer) {
+  HttpAnswer answer = get("/bunny/lod.glb?faces=20&draco=1");
+  ASSERT_TRUE(answer.lod_job);
+  EXPECT_EQ(answer.lod_job->format, LodFormat::glb_draco);
+  EXPECT_EQ(answer.lod_job->wish, parse_wish("faces=20").value());
+  EXPECT_EQ(answer.fields.find("Content-Type"), "model/gltf-binary");
+  EXPECT_EQ(answer.fields.find("Cache-Control"), "no-cache");
+
+  take_lod(answer, std::make_shared<const LodFile>(LodFile{{1, 2, 3}, 20, 12, true}));
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.body_bytes(), 3u);
+  EXPECT_EQ(answer.fields.find("PMesh-Faces"), "20");
+  EXPECT_EQ(answer.fields.find("PMesh-Reached"), "1");
+}
+
+TEST_F(HttpAnswerTest, FinishedLevelsThatAreKnownAreNotMade) {
+  const std::string tag(get("/bunny/lod.ply?faces=20").fields.find("ETag"));
+  const HttpAnswer answer = get("/bunny/lod.ply?faces=20", {.if_none_match = tag});
+  EXPECT_EQ(answer.status, 304);
+  EXPECT_FALSE(answer.lod_job);
+  EXPECT_NE(get("/bunny/lod.ply?faces=40").fields.find("ETag"), tag);
+  EXPECT_NE(get("/bunny/lod.obj?faces=20").fields.find("ETag"), tag);
+}
+
+TEST_F(HttpAnswerTest, FinishedLevelsThatCannotBeMadeAreErrors) {
+  HttpAnswer busy = get("/bunny/lod.ply");
+  take_lod(busy, Error{ErrorCode::out_of_resources, "full"});
+  EXPECT_EQ(busy.status, 503);
+  EXPECT_EQ(busy.fields.find("Retry-After"), "1");
+  EXPECT_EQ(busy.limit, LimitName::lod_queue);
+  HttpAnswer failed = get("/bunny/lod.ply");
+  take_lod(failed, Error{ErrorCode::verification, "/secret/path: altered"});
+  EXPECT_EQ(failed.status, 500);
+  EXPECT_EQ(failed.text.find("secret"), std::string::npos);
+}
+
+TEST_F(HttpAnswerTest, FinishedLevelsHaveAMostOfFaces) {
+  site_.most_lod_faces = 20;
+  EXPECT_TRUE(get("/bunny/lod.ply?faces=20").lod_job);
+  const HttpAnswer answer = get("/bunny/lod.ply");
+  EXPECT_EQ(answer.status, 400);
+  EXPECT_EQ(answer.limit, LimitName::lod_faces);
+}
+
+TEST_F(HttpAnswerTest, BadLevelsAreBadRequests) {
+  for (const char* query :
+       {"?faces=x", "?draco=2", "?draco=1&draco=1", "?chunks=1-2", "?faces=1&draco=1&faces=2"}) {
+    EXPECT_EQ(get(std::string("/bunny/lod.glb") + query).status, 400) << query;
+  }
+  EXPECT_EQ(get("/bunny/lod.exe").status, 404);
+  EXPECT_EQ(get("/nobody/lod.glb").status, 404);
+}
+
+TEST_F(HttpAnswerTest, StreamsAreForWebSockets) {
+  EXPECT_EQ(get("/bunny/stream").status, 426);
+  const HttpAnswer answer = get("/bunny/stream", {.upgrade = true});
+  EXPECT_EQ(answer.status, 101);
+  EXPECT_EQ(answer.stream_id, "bunny");
+  EXPECT_EQ(get("/nobody/stream", {.upgrade = true}).status, 404);
+}
+
+TEST_F(HttpAnswerTest, PagesAndDescriptionAreThere) {
+  EXPECT_EQ(get("/").fields.find("Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(get("/view/bunny").status, 200);
+  EXPECT_EQ(get("/view/nobody").status, 404);
+  EXPECT_TRUE(json::parse(get("/openapi.json").text).contains("openapi"));
+}
+
+TEST_F(HttpAnswerTest, MetricsMayBeServedElsewhere) {
+  EXPECT_EQ(get("/metrics").text, "metrics");
+  EXPECT_EQ(get("/metrics").fields.find("Cache-Control"), "no-store");
+  site_.metrics_text = {};
+  EXPECT_EQ(get("/metrics").status, 404);
+}
+
+TEST_F(HttpAnswerTest, TheMetricsPortServesNothingElse) {
+  site_.set_access({.tokens = {"0123456789abcdef"}, .url_key = {}});
+  const auto answer_to = [&](std::string_view target) {
+    HttpContext context = site_.context();
+    context.only_operation = true;
+    return answer_http({.method = "GET", .target = target}, context).status;
+  };
+  EXPECT_EQ(answer_to("/metrics"), 200);
+  EXPECT_EQ(answer_to("/health"), 200);
+  EXPECT_EQ(answer_to("/catalog"), 404);
+  EXPECT_EQ(answer_to("/bunny"), 404);
+}
+
+class AccessAnswerTest : public HttpAnswerTest {
+ protected:
+  static constexpr std::string_view kToken = "Bearer 0123456789abcdef";
+  static constexpr std::string_view kKey = "an url key of thirty-two letters";
+
+  void SetUp() override {
+    HttpAnswerTest::SetUp();
+    site_.set_access({.tokens = {"0123456789abcdef"}, .url_key = std::string(kKey)});
+  }
+};
+
+TEST_F(AccessAnswerTest, WithoutATokenOnlyHealthAndPagesAreServed) {
+  for (const std::string& target :
+       {std::string("/catalog"), std::string("/bunny"), file(), file("?faces=20"),
+        "/bunny/" + bunny_.hash() + "/c/0", std::string("/bunny/lod.glb"),
+        std::string("/bunny/stream"), std::string("/metrics"), std::string("/nobody")}) {
+    const HttpAnswer answer = get(target, {.upgrade = true});
+    EXPECT_EQ(answer.status, 401) << target;
+    EXPECT_EQ(answer.fields.find("WWW-Authenticate"), kChallenge);
+    EXPECT_EQ(answer.limit, LimitName::access);
+  }
+  for (const char* target : {"/health", "/", "/openapi.json"}) {
+    EXPECT_EQ(get(target).status, 200) << target;
+  }
+}
+
+TEST_F(AccessAnswerTest, ATokenOpensEverythingToItsBearerAlone) {
+  EXPECT_EQ(get("/catalog", {.authorization = kToken}).status, 200);
+  const HttpAnswer answer = get(file(), {.authorization = kToken});
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_TRUE(answer.fields.find("Cache-Control").starts_with("private, "));
+  EXPECT_EQ(get("/catalog", {.authorization = "Bearer 0123456789abcdeX"}).status, 401);
+}
+
+TEST_F(AccessAnswerTest, ASignatureOpensOneMeshForSomeTime) {
+  const std::string query = sign_query(kKey, "bunny", site_.now + 10);
+  EXPECT_EQ(get("/bunny?" + query).status, 200);
+  const HttpAnswer level = get(file("?faces=20&" + query));
+  EXPECT_EQ(level.status, 200);
+  EXPECT_EQ(level.fields.find("Content-Location").find("signature"), std::string::npos);
+  EXPECT_EQ(get(file("?" + query + "&bytes=600")).span, get(file("?bytes=600&" + query)).span);
+  EXPECT_TRUE(get("/bunny/lod.glb?draco=1&" + query + "&faces=20").lod_job);
+  EXPECT_EQ(get("/measured?" + query).status, 403);
+  EXPECT_EQ(get("/catalog?" + query).status, 403);
+  site_.now += 11;
+  EXPECT_EQ(get("/bunny?" + query).status, 403);
 }
 
 }  // namespace

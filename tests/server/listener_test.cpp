@@ -3,12 +3,11 @@
 #include <new>
 #include <thread>
 
-#include <boost/asio/strand.hpp>
 #include <gtest/gtest.h>
 
 #include "protocol/messages.h"
-#include "server/net/refusal_session.h"
 #include "server/frames/tcp_session.h"
+#include "server/net/refusal_session.h"
 #include "tests/server/descriptor_limit.h"
 #include "tests/server/running_server.h"
 #include "tests/server/sample_file.h"
@@ -16,35 +15,42 @@
 namespace pmesh {
 namespace {
 
-using boost::asio::ip::tcp;
 using testing::DescriptorLimit;
 using testing::TestClient;
 
 class ListenerTest : public ::testing::Test {
  protected:
   ~ListenerTest() override {
-    context_.stop();
+    reactors_.stop();
     if (thread_.joinable()) thread_.join();
   }
 
   Result<std::shared_ptr<Listener>> bind(const Listener::MakeSession& make_session) {
-    return Listener::bind(context_, "127.0.0.1:0", registry_, make_session, make_session);
+    return Listener::bind(reactors_, "127.0.0.1:0", registry_, make_session, make_session);
   }
   void run() {
-    thread_ = std::thread([this] { context_.run(); });
+    thread_ = std::thread([this] { reactors_.run(); });
   }
 
-  const SessionLimits limits_;
-  boost::asio::io_context context_;
+  const TemporaryDirectory directory_;
+  const std::unique_ptr<MeshStore> store_ = MeshStore::open(directory_ / "").value();
+  Metrics metrics_;
+  AddressCounts addresses_{0};
+  const TrustedProxies proxies_;
+  CurrentPolicy policy_{make_policy({}).value()};
+  Reactors reactors_{1};
+  LodService lod_{LodLimits{}};
+  Services services_{*store_, lod_, metrics_, addresses_, proxies_, policy_, 0, {}};
   SessionRegistry registry_{10};
   std::thread thread_;
 };
 
 TEST_F(ListenerTest, GoesOnWhenASessionCannotBeMade) {
   bool has_memory = false;
-  const auto listener = bind([&](tcp::socket socket) -> std::shared_ptr<Session> {
+  const auto listener = bind([&](Socket& socket) -> std::shared_ptr<Session> {
     if (!std::exchange(has_memory, true)) throw std::bad_alloc();
-    return std::make_shared<RefusalSession>(std::move(socket), limits_, "served");
+    return std::make_shared<RefusalSession>(std::move(socket), services_, WireProtocol::http,
+                                            "served");
   });
   (*listener)->start();
   run();
@@ -60,26 +66,21 @@ TEST_F(ListenerTest, SaysThatDescriptorsRanOut) {
 }
 
 TEST_F(ListenerTest, TcpSessionGreetsEvenIfDrainedBeforeItRuns) {
-  const TemporaryDirectory directory;
-  const auto store = MeshStore::open(directory / "").value();
-  tcp::acceptor acceptor(context_, {boost::asio::ip::address_v4::loopback(), 0});
-  TestClient client(":" + std::to_string(acceptor.local_endpoint().port()));
-  tcp::socket socket(boost::asio::make_strand(context_));
-  acceptor.accept(socket);
-  const auto session = std::make_shared<TcpSession>(std::move(socket), limits_, *store);
-  session->drain();
-  session->start([] {});
+  const auto listener = bind([&](Socket& socket) -> std::shared_ptr<Session> {
+    const auto session =
+        std::make_shared<TcpSession>(std::move(socket), services_, AddressCounts::Slot());
+    session->drain();
+    return session;
+  });
+  (*listener)->start();
   run();
-
-  const std::string received = client.receive_all();
+  const std::string received = TestClient((*listener)->address()).receive_all();
   FrameParser parser;
   ByteView bytes = as_bytes(received);
   EXPECT_EQ(parser.feed(bytes), FrameStep::done);
   EXPECT_EQ(parser.frame().type, FrameType::hello);
   EXPECT_EQ(parser.feed(bytes), FrameStep::done);
   EXPECT_EQ(parser.frame().type, FrameType::failure);
-  context_.stop();
-  thread_.join();  // before the store goes
 }
 
 TEST(Server, StartsWithMoreMeshesThanDescriptors) {

@@ -21,7 +21,9 @@ using testing::SampleFile;
 
 class MeshStoreTest : public ::testing::Test {
  protected:
-  void open() { store_ = MeshStore::open(directory_ / "", milliseconds(0)).value(); }
+  void open() {
+    store_ = MeshStore::open(directory_ / "", milliseconds(0), milliseconds(0)).value();
+  }
 
   template <class... Args>
   MeshPtr found(const Args&... args) {

@@ -83,6 +83,17 @@ std::string TestClient::receive(std::size_t count) {
   return taken;
 }
 
+std::string TestClient::receive_until(std::string_view end) {
+  std::size_t found = held_.find(end);
+  while (found == std::string::npos) {
+    const std::string more = receive_some();
+    if (more.empty()) return std::exchange(held_, {});
+    held_ += more;
+    found = held_.find(end);
+  }
+  return receive(found + end.size());
+}
+
 std::string TestClient::receive_all() {
   for (std::string more = receive_some(); !more.empty(); more = receive_some()) held_ += more;
   return std::exchange(held_, {});
@@ -103,11 +114,8 @@ std::string HttpResponse::field(const std::string& name) const {
 
 HttpResponse read_response(TestClient& client, bool has_body) {
   HttpResponse response;
-  while (!response.head.ends_with("\r\n\r\n")) {
-    const std::string next = client.receive(1);
-    if (next.empty()) return response;
-    response.head += next;
-  }
+  response.head = client.receive_until("\r\n\r\n");
+  if (!response.head.ends_with("\r\n\r\n")) return response;
   response.status = std::stoi(response.head.substr(9, 3));
   const std::string length = response.field("Content-Length");
   if (has_body && !length.empty()) response.body = client.receive(std::stoul(length));

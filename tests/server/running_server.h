@@ -42,6 +42,8 @@ class TestClient {
   void send(std::string_view bytes);
   /// Exactly `count` bytes; fewer if the connection ends.
   std::string receive(std::size_t count);
+  /// All bytes up to and with `end`; all that came if the connection ends before.
+  std::string receive_until(std::string_view end);
   /// All bytes up to the connection's end.
   std::string receive_all();
   /// Waits until the peer has ended the connection both ways or has reset it, for up to ten

@@ -1,3 +1,7 @@
+#include <ctime>
+#include <map>
+
+#include "server/access/signed_query.h"
 #include "tests/server/descriptor_limit.h"
 #include "tests/server/tcp_session_fixture.h"
 
@@ -193,15 +197,99 @@ TEST_F(TcpSessionTest, OpenOfAMeshThatCannotBeOpenedNowMayBeTriedAgain) {
   EXPECT_EQ(next().type, FrameType::opened);
 }
 
-TEST_F(TcpSessionTest, OneStreamCanBeOpen) {
+TEST_F(TcpSessionTest, SoManyStreamsCanBeOpen) {
+  serve([](ServerOptions& options) { options.limits.streams = 2; });
+  connect_and_open();
+  send(encode_open(2, {.id = "bunny", .hash = {}}));
+  EXPECT_EQ(next().type, FrameType::opened);
+  send(encode_open(3, {.id = "bunny", .hash = {}}));
+  expect_failure(3, FailureCode::too_many_streams);
+  send(encode_want(3, {}));
+  expect_failure(3, FailureCode::not_open);
+  send(encode_open(1, {.id = "bunny", .hash = bunny_.index.header.content_hash}));
+  EXPECT_EQ(next().type, FrameType::opened);
+}
+
+TEST_F(TcpSessionTest, StreamsAreServedInTurn) {
+  bunny_ = large_sample();
+  serve();
+  const SampleFile other = make_sample({7'000'000}, 2);
+  running_->directory().write("other.pmesh", other.bytes);
+  connect_and_open();
+  send(encode_open(9, {.id = "other", .hash = {}}));
+  EXPECT_EQ(next().type, FrameType::opened);
+  send(encode_want(1, {}));
+  send(encode_want(9, {}));
+
+  std::map<std::uint16_t, std::string> received;
+  std::uint16_t first_done = 0;
+  int in_a_row = 0, most_in_a_row = 0;
+  std::uint16_t last = 0;
+  for (int done = 0; done < 2;) {
+    const Frame frame = next();
+    if (frame.type == FrameType::done) {
+      if (++done == 1) first_done = frame.stream;
+      continue;
+    }
+    ASSERT_EQ(frame.type, FrameType::data);
+    const Data data = parse_data(frame.payload).value();
+    std::string& bytes = received[frame.stream];
+    ASSERT_EQ(data.offset, bytes.size());
+    bytes.append(data.bytes.begin(), data.bytes.end());
+    in_a_row = frame.stream == last ? in_a_row + 1 : 1;
+    last = frame.stream;
+    // The first want may be served alone until the second has come.
+    if (first_done == 0 && received.size() == 2) most_in_a_row = std::max(most_in_a_row, in_a_row);
+  }
+  EXPECT_TRUE(received[1] == bunny_.text());
+  EXPECT_TRUE(received[9] == other.text());
+  EXPECT_EQ(first_done, 9);  // the shorter one
+  EXPECT_EQ(most_in_a_row, 1);
+}
+
+TEST_F(TcpSessionTest, APauseHoldsUpNoOtherStream) {
+  bunny_ = large_sample();
   serve();
   connect_and_open();
   send(encode_open(2, {.id = "bunny", .hash = {}}));
-  expect_failure(2, FailureCode::too_many_streams);
-  send(encode_want(2, {}));
-  expect_failure(2, FailureCode::not_open);
-  send(encode_open(1, {.id = "bunny", .hash = bunny_.index.header.content_hash}));
   EXPECT_EQ(next().type, FrameType::opened);
+  want("");
+  send(encode_empty(FrameType::pause, 1));
+  send(encode_want(2, {0, parse_wish("bytes=1000").value()}));
+  Frame frame = next();
+  while (frame.type == FrameType::data) frame = next();
+  EXPECT_EQ(frame.type, FrameType::done);
+  EXPECT_EQ(frame.stream, 2);
+  send(encode_empty(FrameType::cancel, 1));
+  frame = next();
+  while (frame.type == FrameType::data) frame = next();
+  expect_failure(frame, 1, FailureCode::cancelled);
+}
+
+TEST_F(TcpSessionTest, ATokenOpensEverything) {
+  serve([](ServerOptions& options) { options.access.tokens = {"0123456789abcdef"}; });
+  connect();
+  send(encode_open(1, {.id = "bunny", .hash = {}}));
+  expect_failure(1, FailureCode::not_allowed);
+  send(encode_authorise("0123456789abcdeX"));
+  send(encode_open(1, {.id = "bunny", .hash = {}}));
+  expect_failure(1, FailureCode::not_allowed);
+  send(encode_authorise("0123456789abcdef"));
+  send(encode_open(1, {.id = "bunny", .hash = {}}));
+  EXPECT_EQ(next().type, FrameType::opened);
+}
+
+TEST_F(TcpSessionTest, ASignatureOpensItsMesh) {
+  const std::string key(32, 'k');
+  serve([&](ServerOptions& options) { options.access.url_key = key; });
+  connect();
+  const std::string query = sign_query(key, "bunny", std::time(nullptr) + 100);
+  send(encode_open(1, {.id = "bunny?" + query, .hash = {}}));
+  EXPECT_EQ(next().type, FrameType::opened);
+  send(encode_open(2, {.id = "other?" + query, .hash = {}}));
+  expect_failure(2, FailureCode::not_allowed);
+  send(encode_open(3, {.id = "bunny?" + sign_query(key, "bunny", 1), .hash = {}}));
+  expect_failure(3, FailureCode::not_allowed);
 }
 
 TEST_F(TcpSessionTest, TakesFramesByteByByte) {

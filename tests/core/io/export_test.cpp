@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,10 @@ const Lattice kFarAway{{5'000'000.1, -4e6, 0.3}, 1e-4, 20};
 
 const LatticeMesh kMesh{{{0, 0, 0}, {1023, 2, 0}, {5, 1000, 7}, {1, 2, 3}}, {{0, 1, 2}, {3, 2, 1}}};
 
-std::string as_text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+std::string text_of(ExportFormat format, const LatticeMesh& mesh, const Lattice& lattice) {
+  const Bytes bytes = format_mesh(format, mesh, lattice).value();
+  return {bytes.begin(), bytes.end()};
+}
 
 TEST(FitsSinglePrecision, ComparesTheStepWithTheLargestCoordinate) {
   EXPECT_TRUE(fits_single_precision(kUnit));
@@ -45,8 +49,9 @@ TEST(FitsSinglePrecision, KeepsEveryPositionWithinAnEighthOfAStep) {
 }
 
 TEST(Export, ImportGivesThePositionsAndTrianglesBack) {
-  for (const MeshFormat format : {MeshFormat::ply, MeshFormat::obj}) {
-    const ImportedMesh back = parsed(format, as_text(format_mesh(format, kMesh, kFarAway)));
+  for (const auto& [as, format] : {std::pair(ExportFormat::ply, MeshFormat::ply),
+                                   std::pair(ExportFormat::obj, MeshFormat::obj)}) {
+    const ImportedMesh back = parsed(format, text_of(as, kMesh, kFarAway));
     EXPECT_EQ(back.mesh.triangles, kMesh.triangles);
     ASSERT_EQ(back.mesh.positions.size(), kMesh.positions.size());
     for (std::size_t i = 0; i < kMesh.positions.size(); ++i) {
@@ -58,10 +63,8 @@ TEST(Export, ImportGivesThePositionsAndTrianglesBack) {
 TEST(Export, SinglePrecisionGivesTheSameFloatsInBothFormats) {
   const Lattice lattice{{0.1, 0.2, 0.3}, 0.01, 10};
   ASSERT_TRUE(fits_single_precision(lattice));
-  const ImportedMesh ply =
-      parsed(MeshFormat::ply, as_text(format_mesh(MeshFormat::ply, kMesh, lattice)));
-  const ImportedMesh obj =
-      parsed(MeshFormat::obj, as_text(format_mesh(MeshFormat::obj, kMesh, lattice)));
+  const ImportedMesh ply = parsed(MeshFormat::ply, text_of(ExportFormat::ply, kMesh, lattice));
+  const ImportedMesh obj = parsed(MeshFormat::obj, text_of(ExportFormat::obj, kMesh, lattice));
   for (std::size_t i = 0; i < kMesh.positions.size(); ++i) {
     const Vec3d a = ply.mesh.positions[i];
     const Vec3d b = obj.mesh.positions[i];
@@ -79,13 +82,12 @@ TEST(ExportedPositions, AreThoseOfAFile) {
   const ExportedPositions exported(lattice);
   std::vector<Vec3d> positions(mesh.positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = exported(mesh.positions[i]);
-  EXPECT_EQ(
-      parsed(MeshFormat::ply, as_text(format_mesh(MeshFormat::ply, mesh, lattice))).mesh.positions,
-      positions);
+  EXPECT_EQ(parsed(MeshFormat::ply, text_of(ExportFormat::ply, mesh, lattice)).mesh.positions,
+            positions);
 }
 
 TEST(Export, PlyIsPinned) {
-  const std::string ply = as_text(format_mesh(MeshFormat::ply, {{{1, 2, 0}}, {{0, 0, 0}}}, kUnit));
+  const std::string ply = text_of(ExportFormat::ply, {{{1, 2, 0}}, {{0, 0, 0}}}, kUnit);
   EXPECT_EQ(ply,
             "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
             "property float y\nproperty float z\nelement face 1\n"
@@ -94,7 +96,7 @@ TEST(Export, PlyIsPinned) {
 }
 
 TEST(Export, ObjIsPinned) {
-  EXPECT_EQ(as_text(format_mesh(MeshFormat::obj, kMesh, kUnit)),
+  EXPECT_EQ(text_of(ExportFormat::obj, kMesh, kUnit),
             "v 0 0 0\nv 511.5 1 0\nv 2.5 500 3.5\nv 0.5 1 1.5\nf 1 2 3\nf 4 3 2\n");
 }
 
@@ -109,11 +111,29 @@ TEST(Export, WritesTheFileThatTheExtensionNames) {
   }
 }
 
+TEST(Export, KnowsFormatsByExtension) {
+  EXPECT_EQ(export_format_of("a/b.ply"), ExportFormat::ply);
+  EXPECT_EQ(export_format_of("A.GLB"), ExportFormat::glb);
+  EXPECT_EQ(export_format_of("x.y.Drc"), ExportFormat::drc);
+  EXPECT_EQ(export_format_of("x.obj"), ExportFormat::obj);
+  for (const char* path : {"", "glb", "a.stl", "a.gltf", "a.glb.gz"}) {
+    EXPECT_EQ(export_format_of(path), std::nullopt) << path;
+  }
+}
+
+TEST(Export, WritesGlbAndDracoFiles) {
+  const TemporaryDirectory folder;
+  ASSERT_TRUE(export_mesh(folder / "out.glb", kMesh, kUnit).ok());
+  ASSERT_TRUE(export_mesh(folder / "out.drc", kMesh, kUnit).ok());
+  EXPECT_TRUE(contents(folder / "out.glb").starts_with("glTF"));
+  EXPECT_TRUE(contents(folder / "out.drc").starts_with("DRACO"));
+}
+
 TEST(Export, RefusesOtherFormats) {
   const Status written = export_mesh("out.stl", kMesh, kUnit);
   ASSERT_FALSE(written.ok());
   EXPECT_EQ(written.error().code, ErrorCode::usage);
-  EXPECT_EQ(written.error().message, "out.stl: meshes are written as .ply or .obj");
+  EXPECT_EQ(written.error().message, "out.stl: meshes are written as .ply, .obj, .glb or .drc");
 }
 
 TEST(Import, ErrorsBeginWithTheFilesName) {

@@ -1,6 +1,7 @@
-#include "client/tcp_transport.h"
+#include "client/frame_transport.h"
 
 #include <utility>
+#include <vector>
 
 namespace pmesh {
 namespace {
@@ -20,24 +21,24 @@ bool is_done(const Frame& frame) {
 
 }  // namespace
 
-TcpTransport::TcpTransport(TcpMesh mesh, const TransportOptions& options)
-    : mesh_(std::move(mesh)), connection_(options), buffer_(kBlockBytes) {}
+FrameTransport::FrameTransport(std::unique_ptr<FrameWire> wire, std::string id, std::string token)
+    : wire_(std::move(wire)), id_(std::move(id)), token_(std::move(token)), buffer_(kBlockBytes) {}
 
-TransportStatus TcpTransport::open() {
+TransportStatus FrameTransport::open() {
   parser_ = FrameParser();
   unread_ = {};
-  if (auto failed = connection_.connect(mesh_.endpoint)) return failed;
+  if (auto failed = wire_->connect()) return failed;
   TransportStatus failed = greet();
-  if (failed) connection_.close();
+  if (failed) wire_->close();
   return failed;
 }
 
-// Hello and open leave together; the answers come in that order.
-TransportStatus TcpTransport::greet() {
-  Bytes request = encode_hello({});
-  const Bytes open = encode_open(kStream, {mesh_.id, std::nullopt});
-  request.insert(request.end(), open.begin(), open.end());
-  if (auto failed = send(request)) return failed;
+// Hello, token and open leave together; hello and open are answered, in that order.
+TransportStatus FrameTransport::greet() {
+  std::vector<Bytes> request = {encode_hello({})};
+  if (!token_.empty()) request.push_back(encode_authorise(token_));
+  request.push_back(encode_open(kStream, {id_, std::nullopt}));
+  if (auto failed = wire_->send(request)) return failed;
   if (auto failed = expect(FrameType::hello)) return failed;
   const Result<Hello> hello = parse_hello(parser_.frame().payload);
   if (!hello) return broken(hello.error().message);
@@ -51,25 +52,34 @@ TransportStatus TcpTransport::greet() {
   return std::nullopt;
 }
 
-TransportStatus TcpTransport::read(const ReadRequest& request, const ByteSink& sink) {
-  if (!connection_.is_open()) {
+TransportStatus FrameTransport::read(const ReadRequest& request, const ByteSink& sink) {
+  if (!wire_->is_open()) {
     if (auto failed = open()) return failed;
   }
-  TransportStatus failed = send(encode_want(kStream, {request.from, request.wish}));
-  bool wants_more = true;
-  while (!failed && wants_more) {
-    failed = next_frame();
-    if (failed) break;
-    if (is_done(parser_.frame())) return std::nullopt;
-    failed = take_data(parser_.frame(), sink, wants_more);
-  }
-  const bool is_at_end = !failed && !next_frame() && is_done(parser_.frame());
-  if (!is_at_end) connection_.close();  // it failed, or it carries data that nobody wants
+  TransportStatus failed = converse(request, sink);
+  if (failed) wire_->close();
   return failed;
 }
 
-TransportStatus TcpTransport::take_data(const Frame& frame, const ByteSink& sink,
-                                        bool& wants_more) {
+// One want, up to its answer; up to the sink's no if that comes first.
+TransportStatus FrameTransport::converse(const ReadRequest& request, const ByteSink& sink) {
+  const Bytes want[] = {encode_want(kStream, {request.from, request.wish})};
+  if (auto failed = wire_->send(want)) return failed;
+  for (bool wants_more = true; wants_more;) {
+    if (auto failed = next_frame()) {
+      if (failed->retryable) take_unfinished(sink);
+      return failed;
+    }
+    if (is_done(parser_.frame())) return std::nullopt;
+    if (auto failed = take_data(parser_.frame(), sink, wants_more)) return failed;
+  }
+  // If that was not the end, the connection carries data that nobody wants.
+  if (next_frame() || !is_done(parser_.frame())) wire_->close();
+  return std::nullopt;
+}
+
+TransportStatus FrameTransport::take_data(const Frame& frame, const ByteSink& sink,
+                                          bool& wants_more) {
   if (frame.type != FrameType::data || frame.stream != kStream) return unexpected(frame);
   const Result<Data> data = parse_data(frame.payload);
   if (!data) return broken(data.error().message);
@@ -77,14 +87,21 @@ TransportStatus TcpTransport::take_data(const Frame& frame, const ByteSink& sink
   return std::nullopt;
 }
 
-TransportStatus TcpTransport::expect(FrameType type) {
+void FrameTransport::take_unfinished(const ByteSink& sink) {
+  const Frame* frame = parser_.unfinished();
+  if (frame == nullptr || frame->type != FrameType::data || frame->stream != kStream) return;
+  const Result<Data> data = parse_data(frame->payload);
+  if (data) sink(data->offset, data->bytes);
+}
+
+TransportStatus FrameTransport::expect(FrameType type) {
   if (auto failed = next_frame()) return failed;
   const Frame& frame = parser_.frame();
   return frame.type == type ? std::nullopt : unexpected(frame);
 }
 
 // Receives up to the next frame that is no ping or pong.
-TransportStatus TcpTransport::next_frame() {
+TransportStatus FrameTransport::next_frame() {
   for (;;) {
     const FrameStep step = parser_.feed(unread_);
     if (step == FrameStep::bad) return broken(parser_.error());
@@ -95,33 +112,34 @@ TransportStatus TcpTransport::next_frame() {
     const FrameType type = parser_.frame().type;
     if (type != FrameType::ping && type != FrameType::pong) return std::nullopt;
     if (type == FrameType::pong) continue;
-    if (auto failed = send(encode_empty(FrameType::pong, kConnectionStream))) return failed;
+    const Bytes pong[] = {encode_empty(FrameType::pong, kConnectionStream)};
+    if (auto failed = wire_->send(pong)) return failed;
   }
 }
 
-TransportStatus TcpTransport::receive() {
+TransportStatus FrameTransport::receive() {
   std::size_t count = 0;
-  if (auto failed = connection_.read_some(buffer_, count)) return failed;
+  if (auto failed = wire_->receive(buffer_, count)) return failed;
   unread_ = ByteView(buffer_).first(count);
   if (count > 0) return std::nullopt;
   return retryable_error(
-      runtime_error(mesh_.endpoint.text() + ": the connection was closed before the end"));
+      runtime_error(wire_->peer() + ": the connection was closed before the end"));
 }
 
 // A frame that does not belong here is a failure that the server tells, or a broken server.
-TransportStatus TcpTransport::unexpected(const Frame& frame) const {
+TransportStatus FrameTransport::unexpected(const Frame& frame) const {
   if (frame.type != FrameType::failure) {
     return broken("unexpected frame of type " + std::to_string(static_cast<int>(frame.type)));
   }
   const Result<Failure> failure = parse_failure(frame.payload);
   if (!failure) return broken(failure.error().message);
-  const std::string text = mesh_.endpoint.text() + ": " + mesh_.id + ": " + failure->text;
+  const std::string text = wire_->peer() + ": " + id_ + ": " + failure->text;
   if (failure->code == FailureCode::bad_wish) return final_error(usage_error(text));
   return TransportError{runtime_error(text), is_retryable(failure->code)};
 }
 
-TransportError TcpTransport::broken(const std::string& why) const {
-  return final_error(runtime_error(mesh_.endpoint.text() + ": broken protocol: " + why));
+TransportError FrameTransport::broken(const std::string& why) const {
+  return final_error(runtime_error(wire_->peer() + ": broken protocol: " + why));
 }
 
 }  // namespace pmesh

@@ -1,0 +1,163 @@
+#include "server/http/request_parser.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+
+namespace pmesh {
+
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+
+namespace {
+
+constexpr std::string_view kLineEnd = "\r\n";
+constexpr std::string_view kHeadEnd = "\r\n\r\n";
+
+/// Empty lines before a request are let pass (RFC 9112, 2.2), but not for ever.
+constexpr int kMostEmptyLines = 8;
+
+bool is_token_character(char c) {
+  const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  const bool is_digit = c >= '0' && c <= '9';
+  return is_letter || is_digit || std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string::npos;
+}
+
+bool is_token(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), is_token_character);
+}
+
+/// Visible US-ASCII: what a target is made of.
+bool is_visible(char c) { return c > ' ' && c < '\x7F'; }
+
+/// What a field's value may hold: text, blanks, and bytes above US-ASCII.
+bool is_value_character(char c) {
+  return c == '\t' || (static_cast<unsigned char>(c) >= ' ' && c != '\x7F');
+}
+
+int check_request_line(std::string_view line) {
+  const std::size_t first = line.find(' ');
+  const std::size_t last = line.rfind(' ');
+  if (first == std::string_view::npos || first == last) return 400;
+  const std::string_view target = line.substr(first + 1, last - first - 1);
+  if (!is_token(line.substr(0, first))) return 400;
+  if (!std::all_of(target.begin(), target.end(), is_visible)) return 400;
+  const std::string_view version = line.substr(last + 1);
+  return version == "HTTP/1.1" || version == "HTTP/1.0" ? 0 : 400;
+}
+
+bool is_field_line(std::string_view line) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos || !is_token(line.substr(0, colon))) return false;
+  const std::string_view value = line.substr(colon + 1);
+  return std::all_of(value.begin(), value.end(), is_value_character);
+}
+
+/// Takes a line off the front of `head`, which holds one.
+std::string_view take_line(std::string_view& head) {
+  const std::string_view line = head.substr(0, head.find(kLineEnd));
+  head.remove_prefix(line.size() + kLineEnd.size());
+  return line;
+}
+
+/// Whether the values of a field that must come once agree that the request has no body. An empty
+/// or repeated one is no agreement.
+bool says_no_body(const RequestParser::Message& message) {
+  const auto [first, last] = message.equal_range(http::field::content_length);
+  return first == last || (std::next(first) == last && first->value() == "0");
+}
+
+}  // namespace
+
+int check_head(std::string_view head) {
+  if (const int refusal = check_request_line(take_line(head)); refusal != 0) return refusal;
+  while (true) {
+    const std::string_view line = take_line(head);
+    if (line.empty()) return 0;
+    if (!is_field_line(line)) return 400;
+  }
+}
+
+RequestParser::Step RequestParser::next() {
+  drop_last();
+  while (searched_ == 0 && held_.starts_with(kLineEnd)) {
+    if (++empty_lines_ > kMostEmptyLines) return refuse(400);
+    held_.erase(0, kLineEnd.size());
+  }
+  const std::size_t found = held_.find(kHeadEnd, searched_);
+  const std::size_t head_bytes =
+      found == std::string::npos ? held_.size() : found + kHeadEnd.size();
+  if (head_bytes > limits_.header_bytes) {
+    // The whole of what may be a head is there: is it the line that is too long?
+    const bool is_line = held_.find(kLineEnd) >= limits_.target_bytes;
+    return refuse(is_line ? 414 : 431);
+  }
+  if (found == std::string::npos) {
+    searched_ = held_.size() - std::min(held_.size(), kHeadEnd.size() - 1);
+    return Step::more;
+  }
+  head_bytes_ = head_bytes;
+  return parse_head(std::string_view(held_).substr(0, head_bytes));
+}
+
+/// Forgets the request that was given. An idle connection is to hold no memory.
+void RequestParser::drop_last() {
+  if (head_bytes_ == 0) return;
+  held_.erase(0, head_bytes_);
+  if (held_.empty()) held_ = std::string();
+  parser_.reset();
+  head_bytes_ = searched_ = 0;
+  empty_lines_ = 0;
+}
+
+RequestParser::Step RequestParser::refuse(int status) {
+  refusal_ = status;
+  return Step::refusal;
+}
+
+RequestParser::Step RequestParser::parse_head(std::string_view head) {
+  if (const int refusal = check_head(head); refusal != 0) return refuse(refusal);
+  parser_.emplace();
+  parser_->header_limit(static_cast<std::uint32_t>(limits_.header_bytes));
+  boost::system::error_code error;
+  const std::size_t used = parser_->put(asio::buffer(head), error);
+  if (error || used != head.size() || !parser_->is_header_done()) return refuse(400);
+  return check_message();
+}
+
+RequestParser::Step RequestParser::check_message() {
+  const Message& message = parser_->get();
+  const auto fields = static_cast<std::size_t>(std::distance(message.begin(), message.end()));
+  if (fields > limits_.header_fields) return refuse(431);
+  const std::size_t hosts = message.count(http::field::host);
+  if (hosts > 1 || (hosts == 0 && message.version() >= 11)) return refuse(400);
+  if (message.count(http::field::transfer_encoding) > 0) return refuse(413);
+  if (!says_no_body(message)) return refuse(413);
+  if (message.target().size() > limits_.target_bytes) return refuse(414);
+  return Step::request;
+}
+
+HttpRequest RequestParser::request() const {
+  const Message& message = parser_->get();
+  return {.method = message.method_string(),
+          .target = message.target(),
+          .range = message[http::field::range],
+          .if_range = message[http::field::if_range],
+          .if_none_match = message[http::field::if_none_match],
+          .authorization = message[http::field::authorization],
+          .upgrade = boost::beast::websocket::is_upgrade(message)};
+}
+
+std::string RequestParser::forwarded_for() const {
+  std::string list;
+  const auto [first, last] = message().equal_range("X-Forwarded-For");
+  for (auto field = first; field != last; ++field) {
+    if (!list.empty()) list.push_back(',');
+    list.append(field->value());
+  }
+  return list;
+}
+
+}  // namespace pmesh
