@@ -32,6 +32,7 @@ std::string_view origin_form(std::string_view target) {
 Result<std::vector<std::string>> path_segments(std::string_view path) {
   constexpr std::size_t kMostSegments = 5;
   std::vector<std::string> segments;
+  segments.reserve(kMostSegments);
   while (!path.empty() && segments.size() < kMostSegments) {
     path.remove_prefix(1);  // the '/'
     const std::string_view segment = path.substr(0, path.find('/'));

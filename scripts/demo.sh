@@ -101,8 +101,8 @@ done
 if [ -z "$once" ]; then
   cat <<END
 
-The server is up. It has no web page yet; what it serves is listed at
-  http://$http/catalog
+The server is up. Its page lists what it serves:
+  http://$http/
 and from $PWD any level of detail can be fetched:
   $pmesh fetch http://$http/dragon --faces 20000 -o dragon.obj
 Ctrl-C stops it.

@@ -27,6 +27,8 @@ struct SessionLimits {
   /// Bytes that the kernel buffers for a peer (SO_SNDBUF): a thousand stalled readers must not
   /// fill its memory.
   int send_buffer_bytes = 256 * 1024;
+  /// The same for a peer that has just made room by reading: a large buffer spares wake-ups.
+  int live_send_buffer_bytes = 1024 * 1024;
   /// Answers of the frame protocol that wait to be sent, in bytes; at the bound reading stops.
   std::size_t queued_bytes = 64 * 1024;
   /// Meshes open at once on one connection of the frame protocol.

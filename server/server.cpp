@@ -111,7 +111,8 @@ class Server::Impl {
       services.metrics.limits.add(LimitName::connections_per_address);
       return nullptr;
     };
-    const auto make_refusal = [&services, protocol](Socket& socket) {
+    const auto make_refusal = [&services, &registry, protocol](Socket& socket) {
+      if (registry.full()) services.metrics.limits.add(LimitName::connections);
       return std::make_shared<RefusalSession>(std::move(socket), services, protocol,
                                               SessionType::refusal_text());
     };

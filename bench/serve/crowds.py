@@ -108,8 +108,7 @@ def slow(bench, count=5000):
     sample = bench.sample("ten")
     with bench.pmesh(sample.path.parent) as server:
         ours = drip_headers(bench, server, count, "/health")
-        tools = {
-mode: slowhttptest(server, mode) for mode in "HBX"}
+        tools = {mode: slowhttptest(server, mode) for mode in "HBX"}
     files = bench.cache / "nginx-files"
     files.mkdir(parents=True, exist_ok=True)
     (files / "health").write_text("ok\n")

@@ -18,7 +18,7 @@ import system
 
 CONNECTIONS = [1, 64, 1000]
 UNLIMITED = ["--max-connections-per-address", "0"]
-#wrk takes its TLS version and cipher from OpenSSL's settings, so that both servers get the same.
+# wrk takes its TLS version and cipher from OpenSSL's settings, so that both servers get the same.
 OPENSSL_SETTINGS = f"""openssl_conf = top
 [top]
 ssl_conf = ssl
@@ -75,7 +75,11 @@ def start_servers(bench, tls):
 
 
 def wrk(server, target, case, connections, seconds, bench):
-    """One run: {cpu_us: CPU time a request in microseconds, rate: requests a second, errors}."""
+    """One run: {cpu_us: CPU time a request in microseconds, rate: requests a second, errors}. With
+    one connection wrk and the server share a CPU: on two, waking the other one costs either of the
+    servers three times the request, or nothing, as the scheduler pleases."""
+    cpus = {0} if connections == 1 else system.all_cpus()
+    system.pin(server.pid, cpus)
     settings = bench.out / "openssl.cnf"
     settings.write_text(OPENSSL_SETTINGS)
     command = ["wrk", "-t", "1" if connections == 1 else "2", "-c", str(connections),
@@ -85,7 +89,8 @@ def wrk(server, target, case, connections, seconds, bench):
     url = f"{'https' if server.tls else 'http'}://127.0.0.1:{server.port}{target}"
     before = server.cpu_seconds()
     done = subprocess.run(command + [url], check=True, capture_output=True, text=True,
-                          env={**os.environ, "OPENSSL_CONF": str(settings)})
+                          env={**os.environ, "OPENSSL_CONF": str(settings)},
+                          preexec_fn=lambda: os.sched_setaffinity(0, cpus))
     spent = server.cpu_seconds() - before
     requests, elapsed = re.search(r"(\d+) requests in ([\d.]+)s", done.stdout).groups()
     if int(requests) == 0:
@@ -182,9 +187,8 @@ def count_calls(server, case, bench):
     tracer.wait()
     calls = re.findall(r"^ *[\d.]+ +[\d.]+ +\d+ +(\d+)(?: +\d+)? +([a-z]\w*)$",
                        summary.read_text(), re.MULTILINE)
-    return {
-name: int(count) / (2 * run["rate"]) for count, name in calls if name != "total"
-}
+    return {name: int(count) / (2 * run["rate"]) for count, name in calls if name != "total"}
+
 
 def calls(bench):
     case = make_cases(bench, bench.cache / "nginx-files")[3]

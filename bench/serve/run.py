@@ -1,4 +1,4 @@
-#!/ usr / bin / env python3
+#!/usr/bin/env python3
 """How fast the server is beside nginx, and what crowds and changes do to it.
 
 Builds what it needs, prints Markdown, and leaves it as OUT/serve.md with the figures as
@@ -29,8 +29,7 @@ PROGRAMS = ["ip", "nginx", "openssl", "slowhttptest", "strace", "wrk"]
 
 
 NETWORK = """ip link set lo up
-for range in 127.0.0.0/8 127.0.0.1;
-do
+for range in 127.0.0.0/8 127.0.0.1; do
   ip route change table local local $range dev lo proto kernel scope host src 127.0.0.1 \\
     congctl cubic
 done
@@ -147,8 +146,7 @@ def main():
     text = "# The server, measured\n" + "".join(s.markdown() for s in found.values()) + summary
     (arguments.out / "serve.md").write_text(text)
     (arguments.out / "serve.json").write_text(
-        json.dumps({
-  name: section.figures for name, section in found.items()}, indent=1) + "\n")
+        json.dumps({name: section.figures for name, section in found.items()}, indent=1) + "\n")
     print(summary)
     sys.exit(1 if failed else 0)
 

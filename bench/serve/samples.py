@@ -8,8 +8,8 @@ import struct
 import subprocess
 from dataclasses import dataclass
 
-#Squares of so many vertices : files of over 10 and over 64 MiB, and two small ones, of which the
-#first has a chunk of 64 KiB.
+# Squares of so many vertices: files of over 10 and over 64 MiB, and two small ones, of which the
+# first has a chunk of 64 KiB.
 SIDES = {"ten": 1170, "large": 2940, "small": 300, "other": 310}
 
 

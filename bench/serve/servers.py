@@ -93,15 +93,13 @@ class Nginx(Server):
         self.port = ports["tls_port" if tls else "port"]
         cache = ("open_file_cache max=10000 inactive=60s; open_file_cache_valid 60s; "
                  "open_file_cache_min_uses 1; open_file_cache_errors on;" if cached else "")
-        values = {
-  "user" : "user root;" if os.geteuid() == 0 else "",
-      "folder" : str(folder), "files" : str(files), "cipher" : CIPHER, "open_file_cache" : cache
-} | ports template = (HERE / "nginx.conf.in").read_text() self.configuration =
-    folder / "nginx.conf" self.configuration
-                 .write_text(re.sub(r "\{(\w+)\}", lambda match
-                                    : str(values[match.group(1)]), template))
+        values = {"user": "user root;" if os.geteuid() == 0 else "", "folder": str(folder),
+                  "files": str(files), "cipher": CIPHER, "open_file_cache": cache} | ports
+        template = (HERE / "nginx.conf.in").read_text()
+        self.configuration = folder / "nginx.conf"
+        self.configuration.write_text(
+            re.sub(r"\{(\w+)\}", lambda match: str(values[match.group(1)]), template))
 
-                     def
-                     start(self)
-    : self.process = subprocess.Popen([ "nginx", "-c", self.configuration, "-e", "stderr" ],
-                                      stderr = subprocess.DEVNULL)
+    def start(self):
+        self.process = subprocess.Popen(["nginx", "-c", self.configuration, "-e", "stderr"],
+                                        stderr=subprocess.DEVNULL)

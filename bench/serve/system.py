@@ -17,6 +17,17 @@ def family(pid):
     return [pid] + [member for child in children for member in family(int(child))]
 
 
+def all_cpus():
+    return set(range(os.cpu_count()))
+
+
+def pin(pid, cpus):
+    """Keeps all threads of the process, and of all that descend from it, on these CPUs."""
+    for member in family(pid):
+        for thread in os.listdir(f"/proc/{member}/task"):
+            os.sched_setaffinity(int(thread), cpus)
+
+
 def cpu_seconds(pid):
     """utime + stime of the process and all that descend from it."""
     total = 0
@@ -76,8 +87,11 @@ def health_milliseconds(port, path="/health"):
     stand for a failure."""
     start = time.monotonic()
     try:
-        with socket
-.create_connection(("127.0.0.1", port), timeout = 10, source_address = ("127.254.0.1", 0)) as client
-    : client.sendall(f "GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
-                         .encode()) answered = client.recv(12) == b "HTTP/1.1 200" except OSError
-    : answered = False return 1000 * (time.monotonic() - start) if answered else 10_000
+        with socket.create_connection(("127.0.0.1", port), timeout=10,
+                                      source_address=("127.254.0.1", 0)) as client:
+            client.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
+                           .encode())
+            answered = client.recv(12) == b"HTTP/1.1 200"
+    except OSError:
+        answered = False
+    return 1000 * (time.monotonic() - start) if answered else 10_000

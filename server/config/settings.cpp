@@ -107,6 +107,8 @@ std::vector<Setting> live_settings() {
                       "Without the peer taking a byte; then the connection is reset"),
       size_setting("send-buffer-bytes", &SessionLimits::send_buffer_bytes, {4 * kKiB, 64 * kMiB},
                    "What the kernel holds for a peer (SO_SNDBUF)"),
+      size_setting("live-send-buffer-bytes", &SessionLimits::live_send_buffer_bytes,
+                   {4 * kKiB, 64 * kMiB}, "The same for a peer that has just made room by reading"),
       size_setting("queued-bytes", &SessionLimits::queued_bytes, {kKiB, kGiB},
                    "Unsent answers of the frame protocol before the server stops reading"),
       count_setting("streams", &SessionLimits::streams, {1, 65'535},

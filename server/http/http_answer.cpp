@@ -50,7 +50,7 @@ void add_level_fields(HeaderFields& fields, std::uint64_t faces, std::uint64_t v
 
 /// One tag for all wishes that come to the same bytes.
 std::string level_etag(const MeshFile& mesh, const LodRequest& wish, const Resolution& level) {
-  std::string tag = to_hex(mesh.hash());
+  std::string tag = mesh.hash_text();
   if (wish.kind == WishKind::everything) return quoted(tag);
   if (level.begin > 0) tag.append("-").append(std::to_string(level.begin));
   tag.append("-").append(std::to_string(level.end - level.begin));
@@ -103,7 +103,7 @@ struct Responder {
     const auto found = context.store.find(route.id);
     if (!found || !*found) return no_mesh(found, "no such mesh");
     const MeshPtr& mesh = *found;
-    const std::string etag = quoted(to_hex(mesh->hash()) + "-info");
+    const std::string etag = quoted(mesh->hash_text() + "-info");
     HttpAnswer answer =
         text_answer("application/json", for_names(), mesh_info_json({mesh->id(), &mesh->index()}));
     answer.fields.add("ETag", etag);
@@ -142,7 +142,7 @@ struct Responder {
     if (route.chunk >= chunks.size()) return not_found("no such chunk");
     const ChunkRow& row = chunks[static_cast<std::size_t>(route.chunk)];
 
-    const std::string etag = quoted(to_hex(mesh->hash()) + "-c" + std::to_string(route.chunk));
+    const std::string etag = quoted(mesh->hash_text() + "-c" + std::to_string(route.chunk));
     HttpAnswer answer = file_answer(mesh, {row.offset, row.end()}, etag);
     answer.fields.add("Accept-Ranges", "none");
     answered_unchanged(answer, request, etag);
@@ -158,7 +158,7 @@ struct Responder {
     if (!level) return refused_lod(route.wish, *mesh, level.error());
 
     const LodRequest wish = canonical_wish(route.wish, *level, mesh->index());
-    std::string tag = to_hex(mesh->hash());
+    std::string tag = mesh->hash_text();
     tag.append("-").append(to_query(wish)).append("-").append(format_name(route.format));
     HttpAnswer answer = text_answer(media_type(route.format), for_names(), "");
     answer.fields.add("ETag", quoted(tag));
@@ -244,31 +244,39 @@ HttpAnswer no_access(Access access) {
 
 /// A target without the signature that its query may hold.
 struct UnsignedTarget {
-  std::string text;
+  std::string_view text;                  // of the target that was split, or of `rest`
   std::optional<UrlSignature> signature;  // views of the target that was split
+  std::string rest{};
 };
 
-Result<UnsignedTarget> split_target(std::string_view target) {
+/// `target`, split into `into`, which views it.
+Status split_target(std::string_view target, UnsignedTarget& into) {
+  into.text = target;
   const std::size_t question = target.find('?');
-  if (question == std::string_view::npos) return UnsignedTarget{std::string(target), {}};
+  if (question == std::string_view::npos) return {};
   const auto query = split_query(target.substr(question + 1));
   if (!query) return query.error();
-  std::string text(target.substr(0, question));
-  if (!query->rest.empty()) text.append("?").append(query->rest);
-  return UnsignedTarget{std::move(text), query->signature};
+  if (!query->signature) return {};
+  into.signature = query->signature;
+  into.rest = target.substr(0, question);
+  if (!query->rest.empty()) into.rest.append("?").append(query->rest);
+  into.text = into.rest;
+  return {};
 }
 
 HttpAnswer answer_target(const HttpRequest& request, const HttpContext& context) {
-  const auto target = split_target(request.target);
-  if (!target) return error_answer(400, target.error().message);
-  const auto route = parse_target(target->text);
+  UnsignedTarget target;
+  if (Status split = split_target(request.target, target); !split) {
+    return error_answer(400, split.error().message);
+  }
+  const auto route = parse_target(target.text);
   if (!route) return error_answer(400, route.error().message);
   const RouteFacts facts = std::visit(Describe{}, *route);
   if (context.only_operation && !is_operation(facts.name)) return not_found("no such resource");
   const Access access = facts.is_open || context.only_operation
                             ? Access::granted
                             : context.access.judge({.authorization = request.authorization,
-                                                    .signature = target->signature,
+                                                    .signature = target.signature,
                                                     .mesh_id = facts.mesh_id,
                                                     .now = context.now});
   HttpAnswer answer = access == Access::granted ? std::visit(Responder{request, context}, *route)

@@ -43,19 +43,6 @@ std::string_view message_of(int status) {
   }
 }
 
-std::optional<LimitName> limit_of(int refusal) {
-  switch (refusal) {
-    case 408:
-      return LimitName::header_timeout;
-    case 414:
-      return LimitName::target_bytes;
-    case 431:
-      return LimitName::header_bytes;
-    default:
-      return {};
-  }
-}
-
 }  // namespace
 
 std::string HttpSession::refusal_text() {
@@ -138,7 +125,7 @@ Awaitable<bool> HttpSession::answer_request() {
 
 Awaitable<bool> HttpSession::answer_refusal(int status) {
   HttpAnswer answer = error_answer(status, message_of(status));
-  answer.limit = limit_of(status);
+  answer.limit = status == 408 ? LimitName::header_timeout : parser_.limit();
   const Clock::time_point begun = Clock::now();
   const bool sent = co_await send(answer, false);
   record(answer, begun);

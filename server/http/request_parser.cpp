@@ -92,7 +92,7 @@ RequestParser::Step RequestParser::next() {
   if (head_bytes > limits_.header_bytes) {
     // The whole of what may be a head is there: is it the line that is too long?
     const bool is_line = held_.find(kLineEnd) >= limits_.target_bytes;
-    return refuse(is_line ? 414 : 431);
+    return is_line ? refuse(414, LimitName::target_bytes) : refuse(431, LimitName::header_bytes);
   }
   if (found == std::string::npos) {
     searched_ = held_.size() - std::min(held_.size(), kHeadEnd.size() - 1);
@@ -112,8 +112,9 @@ void RequestParser::drop_last() {
   empty_lines_ = 0;
 }
 
-RequestParser::Step RequestParser::refuse(int status) {
+RequestParser::Step RequestParser::refuse(int status, std::optional<LimitName> limit) {
   refusal_ = status;
+  limit_ = limit;
   return Step::refusal;
 }
 
@@ -130,12 +131,12 @@ RequestParser::Step RequestParser::parse_head(std::string_view head) {
 RequestParser::Step RequestParser::check_message() {
   const Message& message = parser_->get();
   const auto fields = static_cast<std::size_t>(std::distance(message.begin(), message.end()));
-  if (fields > limits_.header_fields) return refuse(431);
+  if (fields > limits_.header_fields) return refuse(431, LimitName::header_fields);
   const std::size_t hosts = message.count(http::field::host);
   if (hosts > 1 || (hosts == 0 && message.version() >= 11)) return refuse(400);
   if (message.count(http::field::transfer_encoding) > 0) return refuse(413);
   if (!says_no_body(message)) return refuse(413);
-  if (message.target().size() > limits_.target_bytes) return refuse(414);
+  if (message.target().size() > limits_.target_bytes) return refuse(414, LimitName::target_bytes);
   return Step::request;
 }
 

@@ -44,14 +44,16 @@ class RequestParser {
   std::string forwarded_for() const;
   bool keep_alive() const { return message().keep_alive(); }
 
-  /// The status. Precondition: next() gave a refusal.
+  /// The status; 0 if nothing was refused.
   int refusal() const { return refusal_; }
+  /// The limit that was met, if the refusal is for one.
+  std::optional<LimitName> limit() const { return limit_; }
 
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
   void drop_last();
-  Step refuse(int status);
+  Step refuse(int status, std::optional<LimitName> limit = {});
   Step parse_head(std::string_view head);
   Step check_message();
 
@@ -62,6 +64,7 @@ class RequestParser {
   std::size_t searched_ = 0;    // no head ends before this
   int empty_lines_ = 0;         // before the next request
   int refusal_ = 0;
+  std::optional<LimitName> limit_;
 };
 
 /// 0 if `head`, up to and with its empty line, has the strict form of RFC 9112: lines that end in

@@ -21,6 +21,9 @@ namespace {
 /// A file is looked at for changes once in so many bytes.
 constexpr std::uint64_t kSendFileBytes = 1024 * 1024;
 
+/// A peer that makes room so soon is reading.
+constexpr std::chrono::seconds kLiveWithin{1};
+
 constexpr std::chrono::seconds kLingerTime{1};
 constexpr std::size_t kLingerBytes = 256 * 1024;
 
@@ -41,11 +44,13 @@ asio::socket_base::wait_type wait_of(WireStep::Kind need) {
 Channel::Channel(Socket socket, const SessionLimits& limits)
     : socket_(std::move(socket)),
       executor_(socket_.get_executor()),
-      send_timeout_(limits.send_timeout) {
+      send_timeout_(limits.send_timeout),
+      send_buffer_bytes_(limits.send_buffer_bytes),
+      live_send_buffer_bytes_(std::max(limits.send_buffer_bytes, limits.live_send_buffer_bytes)) {
   error_code ignored;
   socket_.non_blocking(true, ignored);
   socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
-  socket_.set_option(asio::socket_base::send_buffer_size(limits.send_buffer_bytes), ignored);
+  set_send_buffer(send_buffer_bytes_);
   receive_deadline_ = std::make_shared<Deadline>(executor_, [this] {
     timed_out_ = true;
     interrupt_receive();
@@ -183,13 +188,24 @@ Awaitable<bool> Channel::send(Parcel parcel) {
 /// Waits until a step that could not be made can be; false if it never can.
 Awaitable<bool> Channel::wait_to_send(WireStep::Kind need) {
   if (need == WireStep::ended || !socket_.is_open()) co_return false;
-  send_deadline_->set(Deadline::Clock::now() + send_timeout_);
+  const auto begun = Deadline::Clock::now();
+  send_deadline_->set(begun + send_timeout_);
   error_code error;
   do {
     std::tie(error) = co_await socket_.async_wait(wait_of(need), kAwait);
   } while (error == asio::error::operation_aborted && socket_.is_open());
   send_deadline_->clear();
+  const bool is_live = Deadline::Clock::now() - begun < kLiveWithin;
+  set_send_buffer(is_live ? live_send_buffer_bytes_ : send_buffer_bytes_);
   co_return !error;
+}
+
+/// What is queued already stays when the buffer shrinks.
+void Channel::set_send_buffer(int bytes) {
+  if (bytes == send_buffer_) return;
+  send_buffer_ = bytes;
+  error_code ignored;
+  socket_.set_option(asio::socket_base::send_buffer_size(bytes), ignored);
 }
 
 // ---- the end

@@ -81,11 +81,15 @@ class Channel {
   WireStep write(const Parcel& parcel);
   WireStep write_record(const Parcel& parcel);
   Awaitable<bool> wait_to_send(WireStep::Kind need);
+  void set_send_buffer(int bytes);
 
   Socket socket_;
   Executor executor_;
   std::optional<TlsStream> tls_;
   const std::chrono::milliseconds send_timeout_;
+  const int send_buffer_bytes_;
+  const int live_send_buffer_bytes_;
+  int send_buffer_ = 0;  // as it is set now
   std::shared_ptr<Deadline> receive_deadline_;
   std::shared_ptr<Deadline> send_deadline_;
   std::uint64_t sent_bytes_ = 0;

@@ -36,11 +36,15 @@ class MeshFile {
   static Result<std::shared_ptr<const MeshFile>> open(std::string id, const std::string& path);
 
   MeshFile(std::string id, PmFile file, const FileStamp& stamp)
-      : id_(std::move(id)), file_(std::move(file)), stamp_(stamp) {}
+      : id_(std::move(id)),
+        file_(std::move(file)),
+        stamp_(stamp),
+        hash_text_(to_hex(file_.index().header.content_hash)) {}
 
   const std::string& id() const { return id_; }
   const FileIndex& index() const { return file_.index(); }
   const ContentHash& hash() const { return index().header.content_hash; }
+  const std::string& hash_text() const { return hash_text_; }
   std::uint64_t file_bytes() const { return index().header.file_bytes; }
   int descriptor() const { return file_.file().descriptor(); }
   const FileStamp& stamp() const { return stamp_; }
@@ -65,6 +69,7 @@ class MeshFile {
   std::string id_;
   PmFile file_;
   FileStamp stamp_;
+  std::string hash_text_;
   Look name_look_;
   Look file_look_;
   mutable std::atomic<bool> broken_ = false;  // found at the last look

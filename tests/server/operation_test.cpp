@@ -55,7 +55,7 @@ class OperationTest : public ::testing::Test {
   std::unique_ptr<RunningServer> running_;
 };
 
-TEST_F(OperationTest, AnAddressHasSoManyConnections) {
+TEST_F(OperationTest, ThereAreSoManyConnectionsInAllAndPerAddress) {
   serve([](ServerOptions& options) { options.max_connections_per_address = 2; });
   {
     TestClient first(address());
@@ -67,6 +67,13 @@ TEST_F(OperationTest, AnAddressHasSoManyConnections) {
     EXPECT_EQ(read_response(second).status, 503);
     EXPECT_EQ(second.receive_all(), "");
   }
+  running_ = nullptr;
+  serve([](ServerOptions& options) { options.max_connections = 1; });
+  TestClient first(address());
+  first.send(get_request("/health"));
+  EXPECT_EQ(read_response(first).status, 200);
+  EXPECT_EQ(fetch(address(), "/health").status, 503);
+  EXPECT_EQ(metric(R"(pmesh_limits_total{limit="connections"})"), "1");
 }
 
 TEST_F(OperationTest, ConnectionsOfAProxyCountForItsClients) {
@@ -143,6 +150,28 @@ TEST_F(OperationTest, MetricsTellWhatHappened) {
   EXPECT_EQ(idle.receive_all(), "");
   EXPECT_EQ(metric(R"(pmesh_limits_total{limit="idle_timeout"})"), "1");
   EXPECT_TRUE(becomes(R"(pmesh_connections{protocol="http"})", "1"));  // this one
+}
+
+TEST_F(OperationTest, LimitsAreCounted) {
+  serve([](ServerOptions& options) { options.limits.header_timeout = 100ms; });
+  const auto count = [&](const std::string& limit) {
+    return metric("pmesh_limits_total{limit=\"" + limit + "\"}");
+  };
+  EXPECT_EQ(fetch(address(), "/" + std::string(9000, 'x')).status, 414);
+  EXPECT_EQ(fetch(address(), "/health", "X: " + std::string(20000, 'x') + "\r\n").status, 431);
+  std::string many;
+  for (int i = 0; i < 101; ++i) many += "X: y\r\n";
+  EXPECT_EQ(fetch(address(), "/health", many).status, 431);
+  EXPECT_EQ(fetch(address(), file(), "Range: bytes=0-0,1-1,2-2,3-3,4-4,5-5,6-6,7-7,8-8\r\n").status,
+            416);
+  TestClient slow(address());
+  slow.send("GET /");
+  EXPECT_EQ(read_response(slow).status, 408);
+  EXPECT_EQ(count("target_bytes"), "1");
+  EXPECT_EQ(count("header_bytes"), "1");
+  EXPECT_EQ(count("header_fields"), "1");
+  EXPECT_EQ(count("ranges"), "1");
+  EXPECT_EQ(count("header_timeout"), "1");
 }
 
 TEST_F(OperationTest, MetricsOnTheirOwnPortAreNotWithTheMeshes) {
