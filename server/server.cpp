@@ -28,8 +28,9 @@ constexpr std::size_t kMostMetricsConnections = 64;
 
 }  // namespace
 
-/// What a server is made of, in the order in which it must stand: sessions live in the reactors and
-/// use what comes before them; workers hand what they make to the reactors.
+/// What a server is made of, in the order in which it must stand: sessions live in the reactors, use
+/// what comes before them to their last breath, and ask for levels only while the reactors run;
+/// workers hand what they make to the reactors.
 class Server::Impl {
  public:
   Impl(const ServerOptions& options, std::unique_ptr<MeshStore> store, TrustedProxies proxies,
@@ -39,10 +40,10 @@ class Server::Impl {
         addresses_(options.max_connections_per_address),
         proxies_(std::move(proxies)),
         policy_(std::move(policy)),
-        reactors_(options.threads),
-        lod_(options.lod),
         services_(services(options.metrics.empty(), false)),
         metrics_services_(services(true, true)),
+        reactors_(options.threads),
+        lod_(options.lod),
         signals_(reactors_.first()),
         grace_(reactors_.first()),
         registry_(options.max_connections),
@@ -167,10 +168,10 @@ class Server::Impl {
   AddressCounts addresses_;
   const TrustedProxies proxies_;
   CurrentPolicy policy_;
-  Reactors reactors_;
-  LodService lod_;
   Services services_;
   Services metrics_services_;
+  Reactors reactors_;
+  LodService lod_;
 
   // From here on used on the first reactor's thread alone, once it runs.
   asio::signal_set signals_;

@@ -58,23 +58,24 @@ std::vector<Vec3<float>> to_floats(const LatticeMesh& mesh, const Lattice& latti
 
 /// The buffer's bytes as they grow, and what tells a reader what they are.
 struct Gltf {
+  explicit Gltf(const Placement& placement);
+  Gltf(const Gltf&) = delete;
+  Gltf& operator=(const Gltf&) = delete;
+
   Json json;
   Bytes buffer;
 };
 
-Gltf begin(const Placement& placement) {
-  Gltf gltf;
-  gltf.json = {{"asset", {{"version", "2.0"}, {"generator", "pmesh"}}},
-               {"scene", 0},
-               {"scenes", Json::array({{{"nodes", {0}}}})},
-               {"nodes", Json::array({placement.node})},
-               {"materials", Json::array({{{"pbrMetallicRoughness",
-                                            {{"baseColorFactor", {0.8, 0.8, 0.8, 1}},
-                                             {"metallicFactor", 0},
-                                             {"roughnessFactor", 0.8}}},
-                                           {"doubleSided", true}}})}};
-  return gltf;
-}
+Gltf::Gltf(const Placement& placement)
+    : json({{"asset", {{"version", "2.0"}, {"generator", "pmesh"}}},
+            {"scene", 0},
+            {"scenes", Json::array({{{"nodes", {0}}}})},
+            {"nodes", Json::array({placement.node})},
+            {"materials", Json::array({{{"pbrMetallicRoughness",
+                                         {{"baseColorFactor", {0.8, 0.8, 0.8, 1}},
+                                          {"metallicFactor", 0},
+                                          {"roughnessFactor", 0.8}}},
+                                        {"doubleSided", true}}})}}) {}
 
 Json positions_accessor(const Box<float>& box, std::size_t count) {
   return {{"componentType", kFloat},
@@ -160,7 +161,7 @@ void pad(Container& bytes, char filler) {
     bytes.push_back(static_cast<typename Container::value_type>(filler));
 }
 
-Result<Bytes> finish(Gltf gltf) {
+Result<Bytes> finish(Gltf& gltf) {
   gltf.json["buffers"] = Json::array({{{"byteLength", gltf.buffer.size()}}});
   std::string json = gltf.json.dump();
   pad(json, ' ');
@@ -189,13 +190,13 @@ Result<Bytes> finish(Gltf gltf) {
 Result<Bytes> format_glb(const LatticeMesh& mesh, const Lattice& lattice, GlbGeometry geometry) {
   assert(!mesh.triangles.empty());
   const Placement placement = place(lattice);
-  Gltf gltf = begin(placement);
+  Gltf gltf(placement);
   if (geometry == GlbGeometry::accessors) {
     add_accessors(gltf, mesh, placement.lattice);
   } else if (Status added = add_draco(gltf, mesh, placement.lattice); !added) {
     return added.error();
   }
-  return finish(std::move(gltf));
+  return finish(gltf);
 }
 
 }  // namespace pmesh

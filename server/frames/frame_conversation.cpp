@@ -45,9 +45,11 @@ FrameConversation::FrameConversation(FrameWire& wire, Services& services, Policy
   enqueue(encode_hello({.max_frame = kMinFrameLimit}));  // ahead of whatever a drain may say
 }
 
-Awaitable<void> FrameConversation::run() {
+FrameConversation::~FrameConversation() { idle_->stop(); }
+
+Awaitable<void> FrameConversation::run(std::shared_ptr<void> owner) {
   idle_->set(Deadline::Clock::now() + policy_->limits.header_timeout);
-  const auto reader_ended = [this](const std::exception_ptr& exception) {
+  const auto reader_ended = [this, owner](const std::exception_ptr& exception) {
     if (exception) log_exception("a conversation", exception);
     ending_ = true;
     reading_ = false;

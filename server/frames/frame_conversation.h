@@ -24,8 +24,7 @@ struct FrameCredentials {
   std::string query;          ///< Of a signed URL.
 };
 
-/// Threads: all on the wire's executor. The wire must outlive the conversation, and the
-/// conversation its run().
+/// Threads: all on the wire's executor. The wire must outlive the conversation.
 class FrameConversation {
  public:
   /// `policy` is the one that stands while the connection lasts; access is judged by the one that
@@ -33,8 +32,11 @@ class FrameConversation {
   FrameConversation(FrameWire& wire, Services& services, PolicyPtr policy, std::string client,
                     FrameCredentials credentials = {});
 
-  /// The whole conversation, and the connection's end.
-  Awaitable<void> run();
+  ~FrameConversation();
+
+  /// The whole conversation, and the connection's end. `owner` keeps this object: the reader may
+  /// outlive a writer that fails.
+  Awaitable<void> run(std::shared_ptr<void> owner);
 
   /// Lets the wants under way end, and then the conversation.
   void drain();

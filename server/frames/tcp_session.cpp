@@ -33,7 +33,8 @@ std::string TcpSession::refusal_text() {
 Awaitable<void> TcpSession::run() {
   conversation_.emplace(wire_, services(), policy_pointer(), client().to_string());
   if (draining()) conversation_->drain();
-  co_await conversation_->run();
+  const std::shared_ptr<void> owner = shared_from_this();
+  co_await conversation_->run(owner);
 }
 
 void TcpSession::on_drain() {

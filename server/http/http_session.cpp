@@ -110,12 +110,14 @@ Awaitable<bool> HttpSession::answer_request() {
     const Result<LodFilePtr> made = co_await make_lod(*answer.lod_job);
     take_lod(answer, made);
   }
+  const bool talks_too_soon = answer.status == 101 && !parser_.empty();
+  if (talks_too_soon) answer = error_answer(400, "a WebSocket begins after its 101");
   if (answer.status == 101) {
     record(answer, begun);
     co_await become_websocket(answer.stream_id);
     co_return false;
   }
-  const bool keep_alive = parser_.keep_alive() && !draining();
+  const bool keep_alive = parser_.keep_alive() && !draining() && !talks_too_soon;
   const bool sent = co_await send(answer, keep_alive);
   record(answer, begun);
   if (!sent) channel_.reset();
@@ -224,7 +226,8 @@ Awaitable<void> HttpSession::become_websocket(const std::string& id) {
                        .id = id,
                        .query = std::string(request.target.substr(question + 1))});
   if (draining()) websocket_->drain();
-  co_await websocket_->run(parser_.message());
+  const std::shared_ptr<void> owner = shared_from_this();
+  co_await websocket_->run(parser_.message(), owner);
 }
 
 }  // namespace pmesh

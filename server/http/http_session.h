@@ -48,7 +48,7 @@ class HttpSession final : public Session {
   Awaitable<void> become_websocket(const std::string& id);
 
   RequestParser parser_{limits()};
-  std::array<char, 1024> buffer_;
+  std::array<char, 512> buffer_;  // an idle connection holds it too
   std::string request_client_;  // whom the request is from, if a proxy passed it on
   std::unique_ptr<WebSocketSession> websocket_;
   bool is_first_ = true;  // no request has come yet

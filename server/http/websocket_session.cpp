@@ -94,9 +94,10 @@ Awaitable<void> WebSocketFrameWire::close_gently() {
   co_return;
 }
 
-Awaitable<void> WebSocketSession::run(const RequestParser::Message& request) {
+Awaitable<void> WebSocketSession::run(const RequestParser::Message& request,
+                                      std::shared_ptr<void> owner) {
   const bool accepted = co_await wire_.accept(request);
-  if (accepted) co_await conversation_.run();
+  if (accepted) co_await conversation_.run(owner);
 }
 
 }  // namespace pmesh

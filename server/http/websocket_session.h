@@ -48,8 +48,8 @@ class WebSocketSession {
         conversation_(wire_, services, std::move(policy), std::move(client),
                       std::move(credentials)) {}
 
-  /// From the request that asks for it to the connection's end.
-  Awaitable<void> run(const RequestParser::Message& request);
+  /// From the request that asks for it to the connection's end. `owner` keeps this object.
+  Awaitable<void> run(const RequestParser::Message& request, std::shared_ptr<void> owner);
   void drain() { conversation_.drain(); }
 
  private:

@@ -169,6 +169,17 @@ TEST_F(WebSocketSessionTest, ItsUrlMayBeSigned) {
   expect_failure(2, FailureCode::not_allowed);
 }
 
+TEST_F(WebSocketSessionTest, NobodyTalksBeforeItStands) {
+  serve();
+  testing::TestClient client(running_->server().http_address());
+  const std::string fields =
+      "Connection: upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+  client.send(testing::get_request("/bunny/stream", fields) + testing::get_request("/health"));
+  EXPECT_EQ(testing::read_response(client).status, 400);
+  EXPECT_EQ(client.receive_all(), "");
+}
+
 TEST_F(WebSocketSessionTest, IdleOnesEnd) {
   serve(
       [](ServerOptions& options) { options.limits.idle_timeout = std::chrono::milliseconds(50); });
