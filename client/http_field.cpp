@@ -3,24 +3,17 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/trimmed.h"
 #include "protocol/letters.h"
 #include "protocol/lod_request.h"
 
 namespace pmesh {
 namespace {
 
-constexpr std::string_view kWhiteSpace = " \t\r\n";
-
 // Of lower case; one that ends in '-' stands for all that begin with it.
 constexpr std::array<std::string_view, 9> kOwnFields = {
     "host",           "range",   "if-range",          "accept-encoding", "connection",
     "content-length", "upgrade", "transfer-encoding", "sec-websocket-"};
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kWhiteSpace);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kWhiteSpace) - begin + 1);
-}
 
 bool is_letter_or_digit(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');

@@ -22,7 +22,7 @@ int hex_value(char c) {
 std::string_view origin_form(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (!begins_in_any_case(target, scheme)) continue;
-    const std::size_t path = target.find('/', scheme.size());
+    const std::size_t path = target.find_first_of("/?", scheme.size());
     return path == std::string_view::npos ? std::string_view("/") : target.substr(path);
   }
   return target;

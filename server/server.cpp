@@ -26,10 +26,13 @@ namespace {
 /// Of those who read the metrics on a port of their own.
 constexpr std::size_t kMostMetricsConnections = 64;
 
+/// For sessions that were cut.
+constexpr std::chrono::seconds kTimeToEnd{1};
+
 }  // namespace
 
-/// What a server is made of, in the order in which it must stand: sessions live in the reactors, use
-/// what comes before them to their last breath, and ask for levels only while the reactors run;
+/// What a server is made of, in the order in which it must stand: sessions live in the reactors,
+/// use what comes before them to their last breath, and ask for levels only while the reactors run;
 /// workers hand what they make to the reactors.
 class Server::Impl {
  public:
@@ -157,6 +160,10 @@ class Server::Impl {
       if (error) return;
       spdlog::warn("{} connections outlived the grace period and are cut", registry_.count());
       registry_.cut();
+      grace_.expires_after(kTimeToEnd);
+      grace_.async_wait([this](const boost::system::error_code& stopped) {
+        if (!stopped) stop();  // some wait for a level of detail, which is no reason to
+      });
     });
     metrics_registry_.drain([] {});
     registry_.drain([this] { asio::post(reactors_.first(), [this] { stop(); }); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/trimmed.h"
 #include "core/files/read_file.h"
 
 namespace pmesh {
@@ -9,12 +10,6 @@ namespace {
 
 constexpr std::uint64_t kMaxTokenFileBytes = 1024 * 1024;
 constexpr std::uint64_t kMaxUrlKeyBytes = 64 * 1024;
-
-std::string_view trimmed(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
-}
 
 bool is_token_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||

@@ -56,7 +56,12 @@ Awaitable<void> FrameConversation::run(std::shared_ptr<void> owner) {
     work_.notify();
   };
   asio::co_spawn(wire_.executor(), read_frames(), reader_ended);
-  const bool sent_all = co_await write_frames();
+  bool sent_all = false;
+  try {
+    sent_all = co_await write_frames();
+  } catch (...) {
+    log_exception("a conversation", std::current_exception());
+  }
   if (!sent_all) wire_.reset();
   writing_ = false;
   room_.notify();
@@ -104,8 +109,8 @@ void FrameConversation::be_patient() {
 
 /// The peer has said nothing for long: as it should while it is sent to.
 void FrameConversation::on_idle() {
-  const bool owes_nothing = peer_ && !wire_.inside_frame() && next_sending() != streams_.end();
-  if (owes_nothing) return be_patient();
+  const bool is_sent_to = next_sending() != streams_.end() || !answers_.empty();
+  if (peer_ && is_sent_to) return be_patient();
   services_.metrics.limits.add(peer_ ? LimitName::idle_timeout : LimitName::header_timeout);
   end_with(FailureCode::idle_timeout, "nothing was asked for too long");
 }
@@ -201,8 +206,9 @@ void FrameConversation::open_mesh(std::uint16_t stream, const Open& open) {
     streams_[stream] = Stream{mesh, {}};
     return;
   }
+  if (!open.hash) return fail(stream, FailureCode::not_found, "no such mesh");
   const auto current = store.find(open.id);
-  if (open.hash && current && *current) {
+  if (current && *current) {
     fail(stream, FailureCode::hash_changed, "the mesh has another hash now");
   } else {
     fail(stream, FailureCode::not_found, "no such mesh");
@@ -315,6 +321,7 @@ Awaitable<bool> FrameConversation::send_next_data(Streams::iterator stream) {
   const std::uint64_t begin = transfer.next;
   if (begin >= level.end) {
     enqueue(encode_done(last_sent_, {level.end, level.faces, level.vertices, level.reached}));
+    be_patient();
     stream->second.transfer.reset();
     co_return true;
   }

@@ -27,8 +27,6 @@ class FrameWire {
   /// the connection broke, or stop_reading() was called.
   virtual Awaitable<Arrival> next() = 0;
   virtual const Frame& frame() = 0;
-  /// Whether a part of a frame has come: the peer is not idle, but owes the rest.
-  virtual bool inside_frame() const = 0;
   /// Makes next() end, now and from now on. Nothing is to be sent any more.
   virtual Awaitable<void> stop_reading() = 0;
 

@@ -18,7 +18,6 @@ class ChannelFrameWire final : public FrameWire {
   Executor executor() override { return channel_.executor(); }
   Awaitable<Arrival> next() override;
   const Frame& frame() override { return parser_.frame(); }
-  bool inside_frame() const override { return parser_.inside_frame(); }
   Awaitable<void> stop_reading() override;
   Awaitable<bool> send(ByteView frame) override { return channel_.send({frame}); }
   Awaitable<bool> send_data(ByteView head, const MeshFile& mesh, ByteSpan span) override {

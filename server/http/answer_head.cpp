@@ -84,7 +84,8 @@ std::string head_text(const HttpAnswer& answer, std::string_view date, bool keep
   if (answer.may_have_body()) {
     head.append("Content-Length: ").append(std::to_string(answer.body_bytes())).append("\r\n");
   }
-  head.append(keep_alive ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n");
+  head.append(keep_alive ? "Connection: keep-alive" : "Connection: close");
+  head.append(answer.status == 426 ? ", upgrade\r\n\r\n" : "\r\n\r\n");
   return head;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/trimmed.h"
+
 namespace pmesh {
 namespace {
 
@@ -9,12 +11,6 @@ namespace {
 std::string_view opaque_tag(std::string_view tag) {
   if (tag.starts_with("W/")) tag.remove_prefix(2);
   return tag;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 /// Whether a comma-separated list of tags, or "*", holds `etag`. Our tags hold no commas.

@@ -72,7 +72,7 @@ struct Responder {
   HttpAnswer operator()(const UnknownRoute&) const { return not_found("no such resource"); }
 
   HttpAnswer operator()(const ViewerRoute& route) const {
-    if (!route.id.empty()) {
+    if (!route.id.empty() && context.access.is_public()) {  // a guarded server tells nothing
       const auto found = context.store.find(route.id);
       if (!found || !*found) return no_mesh(found, "no such mesh");
     }

@@ -1,6 +1,7 @@
 #include "server/http/http_session.h"
 
 #include <ctime>
+#include <utility>
 
 #include <boost/asio/post.hpp>
 
@@ -13,6 +14,9 @@ namespace asio = boost::asio;
 namespace {
 
 using Clock = Deadline::Clock;
+
+/// A text of at most this size goes out in one piece with its head.
+constexpr std::size_t kShortBytes = 4096;
 
 /// Now, as the Date field has it; remade once a second on each thread.
 const std::string& http_date() {
@@ -77,10 +81,10 @@ Awaitable<HttpSession::Arrival> HttpSession::next_request() {
   if (idle_ && draining()) co_return Arrival{};
   Clock::time_point by =
       Clock::now() + (idle_ && !is_first_ ? limits().idle_timeout : limits().header_timeout);
-  is_first_ = false;
+  const bool was_first = std::exchange(is_first_, false);
   while (step == RequestParser::Step::more) {
     const std::size_t count = co_await channel_.receive(buffer_, by);
-    if (count == 0) co_return after_silence(idle_);
+    if (count == 0) co_return after_silence(was_first);
     parser_.feed({buffer_.data(), count});
     if (idle_) by = Clock::now() + limits().header_timeout;
     idle_ = false;
@@ -90,10 +94,11 @@ Awaitable<HttpSession::Arrival> HttpSession::next_request() {
   co_return Arrival{true, 0};
 }
 
-HttpSession::Arrival HttpSession::after_silence(bool is_idle) {
+/// `is_first`: no request has come before.
+HttpSession::Arrival HttpSession::after_silence(bool is_first) {
   if (!channel_.timed_out()) return {};
-  if (!is_idle) return {false, 408};
-  metrics().limits.add(LimitName::idle_timeout);
+  if (!idle_) return {false, 408};
+  metrics().limits.add(is_first ? LimitName::header_timeout : LimitName::idle_timeout);
   return {};
 }
 
@@ -111,15 +116,18 @@ Awaitable<bool> HttpSession::answer_request() {
     take_lod(answer, made);
   }
   const bool talks_too_soon = answer.status == 101 && !parser_.empty();
-  if (talks_too_soon) answer = error_answer(400, "a WebSocket begins after its 101");
+  if (talks_too_soon) {
+    answer = error_answer(400, "a WebSocket begins after its 101");
+    answer.route = RouteName::stream;
+  }
   if (answer.status == 101) {
-    record(answer, begun);
+    record(answer, parser_.request(), begun);
     co_await become_websocket(answer.stream_id);
     co_return false;
   }
   const bool keep_alive = parser_.keep_alive() && !draining() && !talks_too_soon;
   const bool sent = co_await send(answer, keep_alive);
-  record(answer, begun);
+  record(answer, parser_.request(), begun);
   if (!sent) channel_.reset();
   if (sent && !keep_alive) co_await channel_.close_gently();
   co_return sent&& keep_alive;
@@ -129,8 +137,9 @@ Awaitable<bool> HttpSession::answer_refusal(int status) {
   HttpAnswer answer = error_answer(status, message_of(status));
   answer.limit = status == 408 ? LimitName::header_timeout : parser_.limit();
   const Clock::time_point begun = Clock::now();
+  request_client_.clear();
   const bool sent = co_await send(answer, false);
-  record(answer, begun);
+  record(answer, {}, begun);
   if (sent) co_await channel_.close_gently();
   co_return false;
 }
@@ -175,33 +184,34 @@ Awaitable<Result<LodFilePtr>> HttpSession::make_lod(const LodJob& job) {
 Awaitable<bool> HttpSession::send(const HttpAnswer& answer, bool keep_alive) {
   std::string head = head_text(answer, http_date(), keep_alive);
   const bool has_body = answer.may_have_body() && !answer.head_only;
-  if (has_body) head += answer.text;
+  const bool is_short = answer.text.size() <= kShortBytes;
+  if (has_body && is_short) head += answer.text;
   Channel::Parcel parcel{as_bytes(head)};
   if (has_body && answer.mesh) parcel = {as_bytes(head), answer.mesh.get(), answer.span};
   const WireStep::Kind need = channel_.push(parcel);
   bool sent = need == WireStep::moved;
   if (!sent) sent = co_await channel_.send(parcel);
-  if (sent && has_body && answer.lod) {
-    parcel = {answer.lod->bytes};
+  if (sent && has_body && (answer.lod || !is_short)) {
+    parcel = {answer.lod ? ByteView(answer.lod->bytes) : as_bytes(answer.text)};
     sent = co_await channel_.send(parcel);
   }
   co_return sent;
 }
 
-void HttpSession::record(const HttpAnswer& answer, Clock::time_point begun) {
+void HttpSession::record(const HttpAnswer& answer, const HttpRequest& request,
+                         Clock::time_point begun) {
   const Clock::duration duration = Clock::now() - begun;
   metrics().requests.add(answer.route, answer.status);
   metrics().durations.add(duration);
   if (answer.limit) metrics().limits.add(*answer.limit);
-  if (channel_.send_timed_out()) metrics().limits.add(LimitName::send_timeout);
   if (answer.mesh && !answer.mesh->recently_intact()) ++metrics().broken_files;
   count_sent_bytes();
-  if (policy().access_log) log(answer, duration);
+  if (policy().access_log) log(answer, request, duration);
 }
 
 /// A line about the answer. What was no request has neither method nor target.
-void HttpSession::log(const HttpAnswer& answer, Clock::duration duration) const {
-  const HttpRequest request = parser_.refusal() == 0 ? parser_.request() : HttpRequest{};
+void HttpSession::log(const HttpAnswer& answer, const HttpRequest& request,
+                      Clock::duration duration) const {
   const std::string from = name_of_client();
   log_event(spdlog::level::info, "answered",
             {{"client", std::string_view(from)},

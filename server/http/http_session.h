@@ -19,7 +19,7 @@ class HttpSession final : public Session {
   HttpSession(Socket socket, Services& services, AddressCounts::Slot slot)
       : Session(std::move(socket), services, WireProtocol::http, std::move(slot)) {}
 
-  /// What a client is told that there is no room for. It is made once, so it has no Date.
+  /// What a client is told that there is no room for.
   static std::string refusal_text();
 
  protected:
@@ -35,21 +35,23 @@ class HttpSession final : public Session {
   };
 
   Awaitable<Arrival> next_request();
-  Arrival after_silence(bool is_idle);
+  Arrival after_silence(bool is_first);
   Awaitable<bool> answer_request();
   Awaitable<bool> answer_refusal(int status);
   HttpAnswer judge() const;
   std::optional<AddressCounts::Slot> place_of_client();
   Awaitable<Result<LodFilePtr>> make_lod(const LodJob& job);
   Awaitable<bool> send(const HttpAnswer& answer, bool keep_alive);
-  void record(const HttpAnswer& answer, Deadline::Clock::time_point begun);
-  void log(const HttpAnswer& answer, Deadline::Clock::duration duration) const;
+  void record(const HttpAnswer& answer, const HttpRequest& request,
+              Deadline::Clock::time_point begun);
+  void log(const HttpAnswer& answer, const HttpRequest& request,
+           Deadline::Clock::duration duration) const;
   std::string name_of_client() const;
   Awaitable<void> become_websocket(const std::string& id);
 
   RequestParser parser_{limits()};
   std::array<char, 512> buffer_;  // an idle connection holds it too
-  std::string request_client_;  // whom the request is from, if a proxy passed it on
+  std::string request_client_;    // whom the request is from, if a proxy passed it on
   std::unique_ptr<WebSocketSession> websocket_;
   bool is_first_ = true;  // no request has come yet
   bool idle_ = false;     // between requests

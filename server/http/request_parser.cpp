@@ -69,6 +69,14 @@ bool says_no_body(const RequestParser::Message& message) {
   return first == last || (std::next(first) == last && first->value() == "0");
 }
 
+/// Whether Beast will accept it: then the answer is 101, and nothing else.
+bool is_websocket_upgrade(const RequestParser::Message& message) {
+  constexpr std::size_t kKeyCharacters = 24;  // 16 bytes in base64
+  return boost::beast::websocket::is_upgrade(message) &&
+         message[http::field::sec_websocket_version] == "13" &&
+         message[http::field::sec_websocket_key].size() == kKeyCharacters;
+}
+
 }  // namespace
 
 int check_head(std::string_view head) {
@@ -148,7 +156,7 @@ HttpRequest RequestParser::request() const {
           .if_range = message[http::field::if_range],
           .if_none_match = message[http::field::if_none_match],
           .authorization = message[http::field::authorization],
-          .upgrade = boost::beast::websocket::is_upgrade(message)};
+          .upgrade = is_websocket_upgrade(message)};
 }
 
 std::string RequestParser::forwarded_for() const {

@@ -34,10 +34,7 @@ Awaitable<bool> WebSocketFrameWire::accept(const RequestParser::Message& request
 Awaitable<FrameWire::Arrival> WebSocketFrameWire::next() {
   buffer_.clear();
   const auto [error, count] = co_await stream_.async_read(buffer_, kAwait);
-  if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow) {
-    co_return Arrival{Arrival::bad, "the message is too long"};
-  }
-  if (error) co_return Arrival{};
+  if (error) co_return Arrival{};  // too long a message has been answered by Beast
   if (!stream_.got_binary()) co_return Arrival{Arrival::bad, "the message is not binary"};
   const auto data = buffer_.cdata();
   ByteView bytes(static_cast<const std::uint8_t*>(data.data()), data.size());
@@ -71,7 +68,7 @@ Awaitable<bool> WebSocketFrameWire::send_data(ByteView head, const MeshFile& mes
     const std::size_t held = message_.size();
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(span.size(), kPieceBytes));
     message_.resize(held + count);
-    if (!mesh.intact()) break;
+    if (!mesh.recently_intact()) break;
     const ssize_t read =
         ::pread(mesh.descriptor(), message_.data() + held, count, static_cast<off_t>(span.begin));
     if (read != static_cast<ssize_t>(count)) break;

@@ -24,7 +24,6 @@ class WebSocketFrameWire final : public FrameWire {
   Executor executor() override { return channel_.executor(); }
   Awaitable<Arrival> next() override;
   const Frame& frame() override { return frame_; }
-  bool inside_frame() const override { return buffer_.size() > 0; }
   Awaitable<void> stop_reading() override;
   Awaitable<bool> send(ByteView frame) override;
   Awaitable<bool> send_data(ByteView head, const MeshFile& mesh, ByteSpan span) override;

@@ -1,11 +1,14 @@
 #include "server/metrics/prometheus.h"
 
+#include <atomic>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
 
 #include <sys/resource.h>
 #include <unistd.h>
+
+#include "server/store/look.h"
 
 namespace pmesh {
 namespace {
@@ -120,12 +123,16 @@ double resident_pages() {
   return is_read ? static_cast<double>(resident) : 0;
 }
 
+/// Counted at most once a second: there may be many thousands.
 double open_descriptors() {
+  static const Look look;
+  static std::atomic<double> count = 0;
+  if (!look.is_due(std::chrono::seconds(1))) return count;
   std::error_code error;
-  double count = 0;
+  double open = 0;
   std::filesystem::directory_iterator entry("/proc/self/fd", error);
-  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) ++count;
-  return count;
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) ++open;
+  return count = open;
 }
 
 double seconds_of(const timeval& time) {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/base/parse_number.h"
+#include "core/base/trimmed.h"
 
 namespace pmesh {
 
@@ -27,12 +28,6 @@ bool share_prefix(const std::array<unsigned char, 16>& a, const std::array<unsig
   if (count % 8 == 0) return true;
   const unsigned shift = 8 - count % 8;
   return a[whole] >> shift == b[whole] >> shift;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 }  // namespace

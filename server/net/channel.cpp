@@ -5,6 +5,9 @@
 #include <cerrno>
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
 #include <sys/sendfile.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -21,8 +24,14 @@ namespace {
 /// A file is looked at for changes once in so many bytes.
 constexpr std::uint64_t kSendFileBytes = 1024 * 1024;
 
+/// After so many bytes others have their turn.
+constexpr std::uint64_t kPushBytes = 4 * kSendFileBytes;
+
 /// A peer that makes room so soon is reading.
 constexpr std::chrono::seconds kLiveWithin{1};
+
+/// Between two looks at whether a slow peer takes anything.
+constexpr std::chrono::milliseconds kProgressInterval{1000};
 
 constexpr std::chrono::seconds kLingerTime{1};
 constexpr std::size_t kLingerBytes = 256 * 1024;
@@ -55,10 +64,7 @@ Channel::Channel(Socket socket, const SessionLimits& limits)
     timed_out_ = true;
     interrupt_receive();
   });
-  send_deadline_ = std::make_shared<Deadline>(executor_, [this] {
-    send_timed_out_ = true;
-    reset();
-  });
+  send_deadline_ = std::make_shared<Deadline>(executor_, [this] { check_progress(); });
 }
 
 Channel::~Channel() { close(); }
@@ -66,6 +72,21 @@ Channel::~Channel() { close(); }
 asio::ip::address Channel::peer() const {
   error_code ignored;
   return unmapped(socket_.remote_endpoint(ignored).address());
+}
+
+Awaitable<bool> Channel::start_tls(const TlsContext& context, Deadline::Clock::time_point by) {
+  tls_.emplace(context, socket_.native_handle());
+  timed_out_ = interrupted_ = false;
+  receive_deadline_->set(by);
+  bool may_go_on = true, is_done = false;
+  while (may_go_on && !is_done && socket_.is_open() && !interrupted_) {
+    const WireStep step = tls_->handshake();
+    is_done = step.kind == WireStep::moved;
+    may_go_on = step.kind != WireStep::ended;
+    if (may_go_on && !is_done) may_go_on = co_await wait_to_receive(step.kind);
+  }
+  receive_deadline_->clear();
+  co_return is_done;
 }
 
 // ---- receiving
@@ -88,7 +109,10 @@ Awaitable<std::size_t> Channel::receive(std::span<char> into, Deadline::Clock::t
   co_return error ? 0 : count;
 }
 
+/// Lets others have their turn first: what is decrypted already needs no wait, and a peer that
+/// sends faster than it is answered would have the thread for itself.
 Awaitable<std::size_t> Channel::receive_decrypted(std::span<char> into) {
+  co_await asio::post(executor_, asio::use_awaitable_t<Executor>());
   bool may_go_on = true;
   while (may_go_on && socket_.is_open() && !interrupted_) {
     const WireStep step = tls_->read(into);
@@ -160,7 +184,10 @@ WireStep Channel::write_record(const Parcel& parcel) {
 }
 
 WireStep::Kind Channel::push(Parcel& parcel) {
+  const std::uint64_t enough = sent_bytes_ + kPushBytes;
   while (!parcel.empty()) {
+    if (!socket_.is_open()) return WireStep::ended;
+    if (sent_bytes_ >= enough) return WireStep::must_write;
     const WireStep step = tls_ ? write_record(parcel) : write(parcel);
     if (step.kind == WireStep::interrupted) continue;
     if (step.kind != WireStep::moved) return step.kind;
@@ -189,15 +216,43 @@ Awaitable<bool> Channel::send(Parcel parcel) {
 Awaitable<bool> Channel::wait_to_send(WireStep::Kind need) {
   if (need == WireStep::ended || !socket_.is_open()) co_return false;
   const auto begun = Deadline::Clock::now();
-  send_deadline_->set(begun + send_timeout_);
+  expect_progress();
   error_code error;
   do {
     std::tie(error) = co_await socket_.async_wait(wait_of(need), kAwait);
   } while (error == asio::error::operation_aborted && socket_.is_open());
   send_deadline_->clear();
   const bool is_live = Deadline::Clock::now() - begun < kLiveWithin;
-  set_send_buffer(is_live ? live_send_buffer_bytes_ : send_buffer_bytes_);
+  if (!error) set_send_buffer(is_live ? live_send_buffer_bytes_ : send_buffer_bytes_);
   co_return !error;
+}
+
+/// From now on the peer has the send timeout to take a byte. The socket becomes writable only when
+/// a third of its buffer is free, which a slow reader may need longer for: so the queue is looked
+/// at.
+void Channel::expect_progress() {
+  unsent_ = unsent_bytes();
+  progressed_ = Deadline::Clock::now();
+  send_deadline_->set(progressed_ + std::min(send_timeout_, kProgressInterval));
+}
+
+void Channel::check_progress() {
+  const int unsent = unsent_bytes();
+  const auto now = Deadline::Clock::now();
+  if (unsent < unsent_) progressed_ = now;
+  unsent_ = unsent;
+  if (now - progressed_ >= send_timeout_) {
+    send_timed_out_ = true;
+    reset();
+  } else {
+    send_deadline_->set(std::min(now + kProgressInterval, progressed_ + send_timeout_));
+  }
+}
+
+/// Sent to the kernel and not acknowledged by the peer's.
+int Channel::unsent_bytes() {
+  int unsent = 0;
+  return ::ioctl(socket_.native_handle(), SIOCOUTQ, &unsent) == 0 ? unsent : 0;
 }
 
 /// What is queued already stays when the buffer shrinks.
@@ -234,6 +289,7 @@ void Channel::reset() {
 void Channel::close() {
   receive_deadline_->stop();
   send_deadline_->stop();
+  tls_.reset();  // which would write to whoever gets the descriptor next
   error_code ignored;
   socket_.close(ignored);
 }

@@ -31,8 +31,9 @@ class Channel {
   /// The other end's address; unspecified if the connection is over already.
   boost::asio::ip::address peer() const;
 
-  /// Speaks TLS from now on. Precondition: nothing was received or sent. Throws std::bad_alloc.
-  void start_tls(const TlsContext& context) { tls_.emplace(context, socket_.native_handle()); }
+  /// Speaks TLS from now on; false if the peer does not, or not by then (then timed_out() is true).
+  /// Precondition: nothing was received or sent. Throws std::bad_alloc.
+  Awaitable<bool> start_tls(const TlsContext& context, Deadline::Clock::time_point by);
 
   /// Waits for bytes and gives their number; 0 if the peer closed, the connection broke, the time
   /// was up (then timed_out() is true), or interrupt_receive() was called meanwhile.
@@ -81,6 +82,9 @@ class Channel {
   WireStep write(const Parcel& parcel);
   WireStep write_record(const Parcel& parcel);
   Awaitable<bool> wait_to_send(WireStep::Kind need);
+  void expect_progress();
+  void check_progress();
+  int unsent_bytes();
   void set_send_buffer(int bytes);
 
   Socket socket_;
@@ -93,6 +97,8 @@ class Channel {
   std::shared_ptr<Deadline> receive_deadline_;
   std::shared_ptr<Deadline> send_deadline_;
   std::uint64_t sent_bytes_ = 0;
+  int unsent_ = 0;  // bytes that the peer had not taken when last looked at
+  Deadline::Clock::time_point progressed_{};  // when it was seen to take some
   bool timed_out_ = false;
   bool interrupted_ = false;
   bool send_timed_out_ = false;

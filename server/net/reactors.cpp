@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <thread>
 
+#include <spdlog/spdlog.h>
+
 namespace pmesh {
 
 Reactors::Reactors(unsigned threads) {
@@ -14,6 +16,11 @@ Reactors::Reactors(unsigned threads) {
   }
 }
 
+Reactors::~Reactors() {
+  work_.clear();
+  while (!contexts_.empty()) contexts_.pop_back();
+}
+
 boost::asio::io_context& Reactors::next() {
   return *contexts_[turn_.fetch_add(1, std::memory_order_relaxed) % contexts_.size()];
 }
@@ -21,10 +28,21 @@ boost::asio::io_context& Reactors::next() {
 void Reactors::run() {
   std::vector<std::thread> threads;
   for (std::size_t i = 1; i < contexts_.size(); ++i) {
-    threads.emplace_back([this, i] { contexts_[i]->run(); });
+    threads.emplace_back([this, i] { run(*contexts_[i]); });
   }
-  first().run();
+  run(first());
   for (std::thread& thread : threads) thread.join();
+}
+
+/// A handler that fails, for want of memory, ends what it was for and not the server.
+void Reactors::run(boost::asio::io_context& context) {
+  while (!context.stopped()) {
+    try {
+      context.run();
+    } catch (const std::exception& error) {
+      spdlog::error("a handler failed: {}", error.what());
+    }
+  }
 }
 
 void Reactors::stop() {

@@ -20,6 +20,8 @@ class Reactors {
  public:
   /// `threads` io_contexts; 0 means as many as the machine has cores.
   explicit Reactors(unsigned threads);
+  /// Handlers that never ran may hold a listener, which belongs to the first: that goes last.
+  ~Reactors();
 
   /// Whose turn it is to take a connection.
   boost::asio::io_context& next();
@@ -31,6 +33,8 @@ class Reactors {
   void stop();
 
  private:
+  static void run(boost::asio::io_context& context);
+
   using Work = boost::asio::executor_work_guard<Executor>;
 
   std::vector<std::unique_ptr<boost::asio::io_context>> contexts_;

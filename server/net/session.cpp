@@ -43,6 +43,7 @@ Session::Session(Socket socket, Services& services, WireProtocol protocol, Addre
 
 Session::~Session() {
   count_sent_bytes();
+  if (channel_.send_timed_out()) metrics().limits.add(LimitName::send_timeout);
   metrics().open.subtract(protocol_);
 }
 
@@ -60,7 +61,12 @@ Awaitable<void> Session::live() {
   Welcome welcome = Welcome::yes;
   if (services_.proxies.contains(client_)) welcome = co_await take_proxy_header();
   if (welcome == Welcome::unheard) co_return;
-  if (policy_->tls) channel_.start_tls(*policy_->tls);
+  if (policy_->tls) {
+    const auto by = Deadline::Clock::now() + limits().header_timeout;
+    const bool is_secure = co_await channel_.start_tls(*policy_->tls, by);
+    if (channel_.timed_out()) metrics().limits.add(LimitName::header_timeout);
+    if (!is_secure) co_return;
+  }
   if (welcome == Welcome::yes) {
     co_await run();
     co_return;
@@ -89,6 +95,9 @@ Awaitable<Session::Welcome> Session::take_proxy_header() {
     co_await pause.async_wait(kAwait);
   }
   if (header.kind == ProxyHeader::none) co_return Welcome::yes;
+  if (header.kind == ProxyHeader::more || channel_.timed_out()) {
+    metrics().limits.add(LimitName::header_timeout);
+  }
   if (header.kind != ProxyHeader::header) co_return Welcome::unheard;
   co_await channel_.receive(std::span(bytes).first(header.bytes), by);
   const bool has_place = !header.client || enter(unmapped(*header.client));

@@ -50,6 +50,12 @@ TlsStream::TlsStream(const TlsContext& context, int socket) : ssl_(SSL_new(conte
   SSL_set_accept_state(ssl_.get());
 }
 
+WireStep TlsStream::handshake() {
+  if (is_broken_) return {};
+  ERR_clear_error();
+  return step(SSL_do_handshake(ssl_.get()), 0);
+}
+
 WireStep TlsStream::read(std::span<char> into) {
   if (is_broken_) return {};
   std::size_t count = 0;

@@ -33,7 +33,7 @@ class TlsContext {
   std::unique_ptr<SSL_CTX, Free> context_;
 };
 
-/// One connection's TLS. The handshake happens inside the first calls. Threads: one at a time.
+/// One connection's TLS. Threads: one at a time.
 class TlsStream {
  public:
   /// The largest record, and so the most that one write() takes.
@@ -41,6 +41,9 @@ class TlsStream {
 
   /// Speaks over `socket`, which stays the caller's. Throws std::bad_alloc.
   TlsStream(const TlsContext& context, int socket);
+
+  /// Goes on with the handshake; `moved` once it is over.
+  WireStep handshake();
 
   /// Precondition: a buffer that is not empty.
   WireStep read(std::span<char> into);

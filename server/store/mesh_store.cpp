@@ -113,6 +113,7 @@ std::optional<MeshStore::Entry> MeshStore::entry_of(const std::string& id) const
 /// Whether one more mesh may be open, or the file of `before` only takes its own place.
 bool MeshStore::has_room(const Entry& before) {
   if (before.mesh) return true;
+  forget_missing();
   const std::shared_lock lock(mutex_);
   if (mesh_count_ < most_meshes_) return true;
   if (!said_full_.exchange(true)) {
@@ -120,6 +121,19 @@ bool MeshStore::has_room(const Entry& before) {
                  root_, mesh_count_);
   }
   return false;
+}
+
+/// If there is no room, lets go of meshes whose files are gone; once in a rescan interval.
+void MeshStore::forget_missing() {
+  std::vector<std::string> ids;
+  {
+    const std::shared_lock lock(mutex_);
+    if (mesh_count_ < most_meshes_ || !full_look_.is_due(rescan_interval_)) return;
+    for (const auto& [id, entry] : entries_) ids.push_back(id);
+  }
+  for (const std::string& id : ids) {
+    if (!stamp_of(path_of(id))) forget(id);
+  }
 }
 
 Result<MeshPtr> MeshStore::load(const std::string& id, const Entry& before) const {

@@ -64,6 +64,7 @@ class MeshStore {
   std::optional<Entry> entry_of(const std::string& id) const;
   MeshPtr known_mesh(const std::string& id) const;
   bool has_room(const Entry& before);
+  void forget_missing();
   Result<MeshPtr> load(const std::string& id, const Entry& before) const;
   Result<MeshPtr> refresh(const std::string& id, const FileStamp& stamp);
   void put(const std::string& id, Entry entry);
@@ -83,6 +84,7 @@ class MeshStore {
   std::vector<std::weak_ptr<const MeshFile>> retired_;
 
   std::atomic<bool> said_full_ = false;
+  Look full_look_;
 
   std::mutex rescan_mutex_;  // held while scanning; guards the two below
   std::chrono::steady_clock::time_point next_rescan_{};

@@ -411,6 +411,10 @@ TEST_F(AccessAnswerTest, WithoutATokenOnlyHealthAndPagesAreServed) {
   }
 }
 
+TEST_F(AccessAnswerTest, APageDoesNotTellWhatIsThere) {
+  EXPECT_EQ(get("/view/bunny").status, get("/view/nobody").status);
+}
+
 TEST_F(AccessAnswerTest, ATokenOpensEverythingToItsBearerAlone) {
   EXPECT_EQ(get("/catalog", {.authorization = kToken}).status, 200);
   const HttpAnswer answer = get(file(), {.authorization = kToken});

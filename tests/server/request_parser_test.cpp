@@ -66,6 +66,31 @@ TEST_F(RequestParserTest, JoinsForwardedFor) {
   EXPECT_EQ(parser.forwarded_for(), "1.1.1.1,2.2.2.2, 3.3.3.3");
 }
 
+TEST_F(RequestParserTest, KnowsAWebSocketsHandshake) {
+  const auto upgrades = [&](const std::string& version, const std::string& key) {
+    RequestParser parser(limits_);
+    parser.feed(
+        "GET / HTTP/1.1\r\nHost: x\r\nConnection: keep-alive, Upgrade\r\nUpgrade: websocket\r\n" +
+        version + key + "\r\n");
+    EXPECT_EQ(parser.next(), Step::request);
+    return parser.request().upgrade;
+  };
+  const std::string version = "Sec-WebSocket-Version: 13\r\n";
+  const std::string key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+  EXPECT_TRUE(upgrades(version, key));
+  EXPECT_FALSE(upgrades("", key));
+  EXPECT_FALSE(upgrades("Sec-WebSocket-Version: 8\r\n", key));
+  EXPECT_FALSE(upgrades(version, ""));
+  EXPECT_FALSE(upgrades(version, "Sec-WebSocket-Key: short\r\n"));
+}
+
+TEST_F(RequestParserTest, SkipsSomeEmptyLines) {
+  EXPECT_EQ(refusal_of("\r\n\r\n\r\nGET / HTTP/1.1\r\nHost: x\r\n\r\n"), 0);
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "\r\n";
+  EXPECT_EQ(refusal_of(many), 400);
+}
+
 TEST_F(RequestParserTest, RefusesRequestLinesThatCanBeReadInTwoWays) {
   for (const char* line :
        {"GET  / HTTP/1.1", "GET / HTTP/1.1 ", " GET / HTTP/1.1", "GET /", "GET / HTTP/1.2",
