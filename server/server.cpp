@@ -26,6 +26,9 @@ namespace {
 /// Of those who read the metrics on a port of their own.
 constexpr std::size_t kMostMetricsConnections = 64;
 
+/// Connections that are told why they are turned away, at a time.
+constexpr std::size_t kMostRefusals = 256;
+
 /// For sessions that were cut.
 constexpr std::chrono::seconds kTimeToEnd{1};
 
@@ -50,7 +53,8 @@ class Server::Impl {
         signals_(reactors_.first()),
         grace_(reactors_.first()),
         registry_(options.max_connections),
-        metrics_registry_(kMostMetricsConnections) {}
+        metrics_registry_(kMostMetricsConnections),
+        refusals_(kMostRefusals) {}
 
   template <class SessionType>
   Result<std::string> listen(const std::string& address, WireProtocol protocol) {
@@ -120,7 +124,8 @@ class Server::Impl {
       return std::make_shared<RefusalSession>(std::move(socket), services, protocol,
                                               SessionType::refusal_text());
     };
-    auto listener = Listener::bind(reactors_, address, registry, make_session, make_refusal);
+    auto listener =
+        Listener::bind(reactors_, address, {registry, make_session}, {refusals_, make_refusal});
     if (!listener) return listener.error();
     listeners_.push_back(*listener);
     return (*listener)->address();
@@ -187,6 +192,7 @@ class Server::Impl {
   bool draining_ = false;
   SessionRegistry registry_;
   SessionRegistry metrics_registry_;
+  SessionRegistry refusals_;
   std::vector<std::shared_ptr<Listener>> listeners_;
 };
 

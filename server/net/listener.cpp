@@ -20,7 +20,6 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::chrono::milliseconds kPauseAfterError{100};
-constexpr std::size_t kMostRefusals = 256;
 
 Error listen_error(const std::string& address, const error_code& error) {
   const bool exhausted = error == asio::error::no_descriptors || error == asio::error::no_memory ||
@@ -33,13 +32,11 @@ Error listen_error(const std::string& address, const error_code& error) {
 }  // namespace
 
 Result<std::shared_ptr<Listener>> Listener::bind(Reactors& reactors, const std::string& address,
-                                                 SessionRegistry& registry,
-                                                 MakeSession make_session,
-                                                 MakeSession make_refusal) {
+                                                 Door sessions, Door refusals) {
   const auto endpoint = parse_endpoint(address);
   if (!endpoint) return endpoint.error();
   std::shared_ptr<Listener> listener(
-      new Listener(reactors, registry, std::move(make_session), std::move(make_refusal)));
+      new Listener(reactors, std::move(sessions), std::move(refusals)));
   listener->protocol_ = endpoint->protocol();
   Acceptor& acceptor = listener->acceptor_;
   error_code error;
@@ -56,14 +53,11 @@ Listener::Connection::~Connection() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-Listener::Listener(Reactors& reactors, SessionRegistry& registry, MakeSession make_session,
-                   MakeSession make_refusal)
+Listener::Listener(Reactors& reactors, Door sessions, Door refusals)
     : reactors_(reactors),
       acceptor_(reactors.first()),
-      registry_(registry),
-      make_session_(std::move(make_session)),
-      make_refusal_(std::move(make_refusal)),
-      refusals_(kMostRefusals) {}
+      sessions_(std::move(sessions)),
+      refusals_(std::move(refusals)) {}
 
 std::string Listener::address() const {
   error_code error;
@@ -126,10 +120,10 @@ void Listener::take(asio::io_context& context, Connection connection) {
   try {
     Socket socket(context, protocol_, connection.get());
     connection.release();
-    const auto session = registry_.full() ? nullptr : make_session_(socket);
-    if (session) return registry_.start(session);
-    if (refusals_.full()) return;
-    if (const auto refusal = make_refusal_(socket)) refusals_.start(refusal);
+    const auto session = sessions_.registry.full() ? nullptr : sessions_.make_session(socket);
+    if (session) return sessions_.registry.start(session);
+    if (refusals_.registry.full()) return;
+    refusals_.registry.start(refusals_.make_session(socket));
   } catch (...) {
     log_exception("starting a session", std::current_exception());
   }

@@ -19,14 +19,19 @@ class Listener : public std::enable_shared_from_this<Listener> {
   /// Gives null, and leaves the socket alone, if the connection is to be turned away.
   using MakeSession = std::function<std::shared_ptr<Session>(Socket&)>;
 
+  /// Where connections go: how a session is made, on the thread that is to run it, and where it is
+  /// registered. The registry must be gone before the reactors are.
+  struct Door {
+    SessionRegistry& registry;
+    MakeSession make_session;
+  };
+
   /// Binds to "ADDRESS:PORT" ("[::1]:8080" for IPv6). Fails (usage) if that is not an address,
   /// (runtime) if it cannot be bound, (out_of_resources) if there are no descriptors left for it.
-  /// `make_session` makes the session of a connection, `make_refusal` that of one that is turned
-  /// away or beyond the registry's limit, which should be short; both on the thread that is to run
-  /// it.
+  /// Who is turned away from `sessions`, or finds its registry full, goes to `refusals`, whose
+  /// sessions should be short; beyond the limit of those connections are closed without a word.
   static Result<std::shared_ptr<Listener>> bind(Reactors& reactors, const std::string& address,
-                                                SessionRegistry& registry, MakeSession make_session,
-                                                MakeSession make_refusal);
+                                                Door sessions, Door refusals);
 
   /// The address that was bound, with its real port.
   std::string address() const;
@@ -35,8 +40,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   void stop();
 
  private:
-  Listener(Reactors& reactors, SessionRegistry& registry, MakeSession make_session,
-           MakeSession make_refusal);
+  Listener(Reactors& reactors, Door sessions, Door refusals);
 
   /// An accepted connection on its way to its thread.
   class Connection {
@@ -60,10 +64,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   Reactors& reactors_;
   boost::asio::ip::tcp protocol_ = boost::asio::ip::tcp::v4();
   Acceptor acceptor_;
-  SessionRegistry& registry_;
-  MakeSession make_session_;
-  MakeSession make_refusal_;
-  SessionRegistry refusals_;  // beyond its limit connections are closed without a word
+  Door sessions_;
+  Door refusals_;
 };
 
 }  // namespace pmesh

@@ -21,6 +21,7 @@ class Reactors {
   /// `threads` io_contexts; 0 means as many as the machine has cores.
   explicit Reactors(unsigned threads);
   /// Handlers that never ran may hold a listener, which belongs to the first: that goes last.
+  /// Precondition: nobody else holds a socket or timer.
   ~Reactors();
 
   /// Whose turn it is to take a connection.

@@ -26,7 +26,8 @@ class ListenerTest : public ::testing::Test {
   }
 
   Result<std::shared_ptr<Listener>> bind(const Listener::MakeSession& make_session) {
-    return Listener::bind(reactors_, "127.0.0.1:0", registry_, make_session, make_session);
+    return Listener::bind(reactors_, "127.0.0.1:0", {registry_, make_session},
+                          {registry_, make_session});
   }
   void run() {
     thread_ = std::thread([this] { reactors_.run(); });
