@@ -28,6 +28,7 @@ class HostileTest : public ::testing::Test {
  protected:
   std::unique_ptr<RunningServer> running_ =
       std::make_unique<RunningServer>([this](ServerOptions& options) {
+        options.max_connections_per_address = 0;  // all come from one
         write_hostile_files(options.directory, beside_ / "");
         options.limits.header_timeout = std::chrono::milliseconds(300);
       });

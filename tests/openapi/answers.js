@@ -102,8 +102,10 @@ await check(streamRoute, '/sphere/stream', 101, { ...authorization, ...upgrade }
 await check(streamRoute, '/sphere/stream', 426);
 
 const notProvoked = ['500', '503'];
+// Only with metrics on a port of their own, and only of a server that is open to all.
+const otherServers = ['/metrics 404', '/view/{id} 404'];
 const described = Object.entries(document.paths).flatMap(([path, { get }]) =>
   Object.keys(get.responses).filter((status) => !notProvoked.includes(status)).map((status) => `${path} ${status}`));
-const missed = described.filter((answer) => !checked.has(answer) && answer !== '/metrics 404');
+const missed = described.filter((answer) => !checked.has(answer) && !otherServers.includes(answer));
 require(missed.length === 0, `described, but not checked: ${missed.join(', ')}`);
 console.log(`${checked.size} answers are as described`);
