@@ -21,6 +21,9 @@ namespace asio = boost::asio;
 using Clock = std::chrono::steady_clock;
 using std::chrono::seconds;
 
+/// For the last visits: all that is on its way must be taken and looked at.
+constexpr seconds kTimeToEnd{60};
+
 asio::awaitable<Socket> connect(Visitor& visitor, std::uint16_t port) {
   const auto executor = co_await asio::this_coro::executor;
   const asio::ip::tcp::endpoint server(asio::ip::address_v4::loopback(), port);
@@ -111,7 +114,7 @@ class Soak {
     for (Visitor& visitor : visitors_) {
       asio::co_spawn(context, live(visitor, Clock::now() + time), asio::detached);
     }
-    context.run_for(time + seconds(20));
+    context.run_for(time + kTimeToEnd);
     if (!context.stopped()) tally_.faults.push_back("a visit did not come to its end");
   }
 
