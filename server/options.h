@@ -26,7 +26,7 @@ struct SessionLimits {
   std::chrono::milliseconds send_timeout{30'000};
   /// Bytes that the kernel buffers for a peer (SO_SNDBUF): a thousand stalled readers must not
   /// fill its memory.
-  int send_buffer_bytes = 256 * 1024;
+  int send_buffer_bytes = 192 * 1024;
   /// The same for a peer that has just made room by reading: a large buffer spares wake-ups.
   int live_send_buffer_bytes = 1024 * 1024;
   /// Answers of the frame protocol that wait to be sent, in bytes; at the bound reading stops.

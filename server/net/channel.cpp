@@ -27,7 +27,9 @@ constexpr std::uint64_t kSendFileBytes = 1024 * 1024;
 /// After so many bytes others have their turn.
 constexpr std::uint64_t kPushBytes = 4 * kSendFileBytes;
 
-/// A peer that makes room so soon is reading.
+/// A peer that makes room so soon, and has taken more than its kernel does for one that does not
+/// read, is reading.
+constexpr std::uint64_t kMoreThanAKernelTakes = 512 * 1024;
 constexpr std::chrono::seconds kLiveWithin{1};
 
 /// Between two looks at whether a slow peer takes anything.
@@ -222,7 +224,9 @@ Awaitable<bool> Channel::wait_to_send(WireStep::Kind need) {
     std::tie(error) = co_await socket_.async_wait(wait_of(need), kAwait);
   } while (error == asio::error::operation_aborted && socket_.is_open());
   send_deadline_->clear();
-  const bool is_live = Deadline::Clock::now() - begun < kLiveWithin;
+  const bool is_live =
+      Deadline::Clock::now() - begun < kLiveWithin &&
+      sent_bytes_ >= static_cast<std::uint64_t>(unsent_bytes()) + kMoreThanAKernelTakes;
   if (!error) set_send_buffer(is_live ? live_send_buffer_bytes_ : send_buffer_bytes_);
   co_return !error;
 }
