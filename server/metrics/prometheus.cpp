@@ -62,7 +62,7 @@ void write_connections(Writer& out, const Metrics& metrics) {
   out.family("pmesh_connections", "gauge", "Open connections.");
   write_counters(out, metrics.open, "protocol", kWireProtocolNames);
   out.family("pmesh_connections_accepted_total", "counter",
-             "Connections that were given a session.");
+             "Connections taken, also to be turned away.");
   write_counters(out, metrics.accepted, "protocol", kWireProtocolNames);
   out.family("pmesh_sent_bytes_total", "counter", "Bytes handed to the kernel, before TLS.");
   write_counters(out, metrics.sent_bytes, "protocol", kWireProtocolNames);
