@@ -39,6 +39,7 @@ struct SessionLimits {
 struct LodLimits {
   unsigned workers = 1;             ///< Threads that make them.
   std::size_t queue = 64;           ///< Waiting for a worker; more are answered by 503.
+  std::size_t per_address = 8;      ///< Waiting or being made for one client; 0: any number.
   std::uint64_t faces = 5'000'000;  ///< Of one of them; a wish for more is refused.
   std::size_t cache_bytes = 256 * 1024 * 1024;
 };

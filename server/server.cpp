@@ -43,6 +43,7 @@ class Server::Impl {
        PolicyPtr policy)
       : options_(options),
         store_(std::move(store)),
+        catalogue_(*store_),
         addresses_(options.max_connections_per_address),
         proxies_(std::move(proxies)),
         policy_(std::move(policy)),
@@ -96,8 +97,9 @@ class Server::Impl {
   Services services(bool with_metrics, bool only_operation) {
     std::function<std::string()> metrics_text;
     if (with_metrics) metrics_text = [this] { return this->metrics_text(); };
-    return {*store_,       lod_,    metrics_,           addresses_,
-            proxies_,      policy_, options_.lod.faces, std::move(metrics_text),
+    return {*store_,       catalogue_,         lod_,
+            metrics_,      addresses_,         proxies_,
+            policy_,       options_.lod.faces, std::move(metrics_text),
             only_operation};
   }
 
@@ -176,6 +178,7 @@ class Server::Impl {
 
   const ServerOptions options_;
   const std::unique_ptr<MeshStore> store_;
+  CatalogueCache catalogue_;
   Metrics metrics_;
   AddressCounts addresses_;
   const TrustedProxies proxies_;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "server/http/catalogue_cache.h"
 #include "server/lod/lod_service.h"
 #include "server/metrics/metrics.h"
 #include "server/net/address_block.h"
@@ -17,6 +18,7 @@ namespace pmesh {
 /// All of it outlives the sessions. Threads: as the members say, which is any.
 struct Services {
   MeshStore& store;
+  CatalogueCache& catalogue;
   LodService& lod;
   Metrics& metrics;
   AddressCounts& addresses;

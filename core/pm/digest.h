@@ -14,7 +14,7 @@ ContentHash hash_prologue(ByteView prologue);
 /// write_prologue() with the content hash brought up to date, in `index`, too.
 Bytes write_hashed_prologue(FileIndex& index);
 
-/// The digest of a base mesh's or a chunk's bytes.
+/// The digest of a base mesh's or a chunk's bytes, or of any other.
 SectionDigest digest_section(ByteView section);
 
 }  // namespace pmesh

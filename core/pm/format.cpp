@@ -323,11 +323,11 @@ Status check_rows(const FileIndex& index, const DecodeLimits& limits) {
 
 }  // namespace
 
-std::string to_hex(const ContentHash& hash) {
+std::string to_hex(ByteView bytes) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string text;
-  text.reserve(2 * hash.size());
-  for (const std::uint8_t byte : hash) {
+  text.reserve(2 * bytes.size());
+  for (const std::uint8_t byte : bytes) {
     text += kDigits[byte >> 4];
     text += kDigits[byte & 15];
   }

@@ -40,8 +40,8 @@ inline constexpr std::uint64_t kMaxChunkOverhead = 64;
 
 /// The first 16 bytes of SHA-256 over header and index, with this field zero.
 using ContentHash = std::array<std::uint8_t, 16>;
-/// 32 lower-case hex digits, as in URLs and ETags.
-std::string to_hex(const ContentHash& hash);
+/// Two lower-case hex digits a byte, as hashes have in URLs and ETags.
+std::string to_hex(ByteView bytes);
 
 /// The first 8 bytes of SHA-256 of a base mesh or chunk.
 using SectionDigest = std::array<std::uint8_t, 8>;

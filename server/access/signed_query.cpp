@@ -9,6 +9,7 @@
 #include <openssl/hmac.h>
 
 #include "core/base/parse_number.h"
+#include "core/pm/format.h"
 
 namespace pmesh {
 namespace {
@@ -26,16 +27,6 @@ Signature signature_of(std::string_view key, std::string_view id, std::uint64_t 
                                            text.size(), signature.data(), &size);
   assert(done != nullptr && size == signature.size());
   return signature;
-}
-
-std::string hex(const Signature& signature) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : signature) {
-    text.push_back(kDigits[byte >> 4]);
-    text.push_back(kDigits[byte & 15]);
-  }
-  return text;
 }
 
 /// Puts the value of `piece` into `value` if its name is `name`; the failure is that it is there
@@ -74,16 +65,32 @@ Result<SplitQuery> split_query(std::string_view query) {
 }
 
 std::string sign_query(std::string_view key, std::string_view id, std::uint64_t expires) {
-  return "expires=" + std::to_string(expires) + "&signature=" + hex(signature_of(key, id, expires));
+  return "expires=" + std::to_string(expires) +
+         "&signature=" + to_hex(signature_of(key, id, expires));
 }
 
 bool is_valid_signature(const UrlSignature& signature, std::string_view key, std::string_view id,
                         std::uint64_t now) {
   const auto expires = parse_whole<std::uint64_t>(signature.expires);
   if (!expires || *expires < now) return false;
-  const std::string right = hex(signature_of(key, id, *expires));
+  const std::string right = to_hex(signature_of(key, id, *expires));
   return signature.signature.size() == right.size() &&
          CRYPTO_memcmp(signature.signature.data(), right.data(), right.size()) == 0;
+}
+
+std::string hide_signatures(std::string_view target) {
+  constexpr std::string_view kName = "signature=";
+  const std::size_t begin = std::min(target.find('?'), target.size());
+  std::string shown(target.substr(0, begin));
+  std::string_view query = target.substr(begin);
+  while (!query.empty()) {
+    shown.push_back(query.front());  // '?' or '&'
+    query.remove_prefix(1);
+    const std::string_view piece = query.substr(0, query.find('&'));
+    query.remove_prefix(piece.size());
+    shown.append(piece.starts_with(kName) ? "signature=..." : piece);
+  }
+  return shown;
 }
 
 }  // namespace pmesh

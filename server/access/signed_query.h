@@ -27,6 +27,10 @@ struct SplitQuery {
 /// point into `query`. Fails (usage) if one of them comes twice. Never looks at the rest.
 Result<SplitQuery> split_query(std::string_view query);
 
+/// `target` with "..." for the value of every `signature` in its query: for logs, whose readers
+/// must not get access by them.
+std::string hide_signatures(std::string_view target);
+
 /// "expires=UNIX&signature=HEX" for the mesh `id` up to and including the second `expires` (Unix
 /// time).
 std::string sign_query(std::string_view key, std::string_view id, std::uint64_t expires);

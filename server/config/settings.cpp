@@ -81,6 +81,8 @@ std::vector<Setting> process_settings() {
                     "Threads that make finished levels of detail"),
       count_setting("lod-queue", &LodLimits::queue, {0, 100'000},
                     "Levels that wait for a worker; more are answered by 503"),
+      count_setting("lod-per-address", &LodLimits::per_address, {0, 100'000},
+                    "Levels that wait or are made for one client; 0: any number"),
       count_setting("lod-faces", &LodLimits::faces, {1, 4'000'000'000},
                     "Faces of a finished level; a wish for more is refused"),
       size_setting("lod-cache-bytes", &LodLimits::cache_bytes, {0, 1024 * kGiB},

@@ -53,11 +53,6 @@ std::string_view reason_phrase(int status) {
 
 }  // namespace
 
-std::uint64_t HttpAnswer::body_bytes() const {
-  if (mesh) return span.size();
-  return lod ? lod->bytes.size() : text.size();
-}
-
 HttpAnswer error_answer(int status, std::string_view message) {
   HttpAnswer answer;
   answer.status = status;

@@ -38,6 +38,7 @@ bool answered_unchanged(HttpAnswer& answer, const HttpRequest& request, std::str
   answer.status = 304;
   answer.text.clear();
   answer.mesh = nullptr;
+  answer.shared = nullptr;
   return true;
 }
 

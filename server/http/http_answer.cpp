@@ -93,10 +93,12 @@ struct Responder {
   }
 
   HttpAnswer operator()(const CatalogRoute&) const {
-    const std::vector<MeshPtr> meshes = context.store.list();
-    std::vector<CatalogueEntry> entries;
-    for (const MeshPtr& mesh : meshes) entries.push_back({mesh->id(), &mesh->index()});
-    return text_answer("application/json", for_names(), catalogue_json(entries));
+    const std::shared_ptr<const Catalogue> catalogue = context.catalogue.get();
+    HttpAnswer answer = text_answer("application/json", for_names(), "");
+    answer.shared = {catalogue, &catalogue->json};
+    answer.fields.add("ETag", catalogue->etag);
+    answered_unchanged(answer, request, catalogue->etag);
+    return answer;
   }
 
   HttpAnswer operator()(const MeshInfoRoute& route) const {
@@ -164,7 +166,7 @@ struct Responder {
     answer.fields.add("ETag", quoted(tag));
     answer.fields.add("Accept-Ranges", "none");
     if (answered_unchanged(answer, request, quoted(tag))) return answer;
-    answer.lod_job = LodJob{mesh, route.wish, route.format};
+    answer.lod_job = LodJob{mesh, route.wish, route.format, {}};
     return answer;
   }
 
@@ -299,19 +301,20 @@ HttpAnswer answer_http(const HttpRequest& request, const HttpContext& context) {
   return answer;
 }
 
-void take_lod(HttpAnswer& answer, const Result<LodFilePtr>& made) {
+void take_lod(HttpAnswer& answer, const LodOutcome& outcome) {
   answer.lod_job.reset();
-  if (made) {
-    answer.lod = *made;
-    add_level_fields(answer.fields, (*made)->faces, (*made)->vertices, (*made)->reached);
+  if (outcome.file) {
+    const LodFilePtr& file = *outcome.file;
+    answer.shared = {file, &file->bytes};
+    add_level_fields(answer.fields, file->faces, file->vertices, file->reached);
     return;
   }
-  const bool is_busy = made.error().code == ErrorCode::out_of_resources;
+  const bool is_busy = outcome.file.error().code == ErrorCode::out_of_resources;
   HttpAnswer failed = is_busy ? busy_answer(503, "too many levels of detail are being made")
                               : error_answer(500, "the level of detail could not be made");
   failed.route = answer.route;
   failed.head_only = answer.head_only;
-  if (is_busy) failed.limit = LimitName::lod_queue;
+  failed.limit = outcome.limit;
   answer = std::move(failed);
 }
 

@@ -4,12 +4,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "core/base/bytes.h"
 #include "protocol/byte_range.h"
 #include "server/access/access_policy.h"
+#include "server/http/catalogue_cache.h"
 #include "server/http/header_fields.h"
 #include "server/lod/lod_service.h"
 #include "server/metrics/metrics.h"
@@ -22,9 +25,11 @@ namespace pmesh {
 struct HttpRequest {
   std::string_view method{};
   std::string_view target{};
-  std::string_view range{};  ///< A field's value, as those below; empty if there is none.
+  /// A field's value, as those below; empty if there is none. Of Range and If-Range there must be
+  /// one, or no range is asked for.
+  std::string_view range{};
   std::string_view if_range{};
-  std::string_view if_none_match{};
+  std::string if_none_match{};  ///< All such fields as one list.
   std::string_view authorization{};
   bool upgrade = false;  ///< It asks for a WebSocket.
 };
@@ -32,6 +37,7 @@ struct HttpRequest {
 /// What an answer depends on besides the request. All of it outlives the call.
 struct HttpContext {
   MeshStore& store;
+  CatalogueCache& catalogue;  ///< Of the store.
   const AccessPolicy& access;
   const SessionLimits& limits;
   std::uint64_t most_lod_faces = 0;
@@ -51,7 +57,7 @@ struct HttpAnswer {
   std::string text;  ///< The body, if it is none of those below.
   MeshPtr mesh;      ///< If not null the body is `span` of its file.
   ByteSpan span;
-  LodFilePtr lod;  ///< If not null the body is its bytes.
+  std::shared_ptr<const Bytes> shared;  ///< If not null the body is these, which others get too.
 
   /// What is still to be done: take_lod() completes the answer with what comes of the job.
   std::optional<LodJob> lod_job;
@@ -60,7 +66,9 @@ struct HttpAnswer {
 
   bool head_only = false;  ///< Send no body: the request was HEAD.
 
-  std::uint64_t body_bytes() const;
+  std::uint64_t body_bytes() const { return mesh ? span.size() : body().size(); }
+  /// The body, if it is not of a mesh's file.
+  ByteView body() const { return shared ? ByteView(*shared) : as_bytes(text); }
   /// 204 and 304 have no body, and no Content-Length either.
   bool may_have_body() const { return status != 204 && status != 304; }
 };
@@ -69,7 +77,7 @@ struct HttpAnswer {
 HttpAnswer answer_http(const HttpRequest& request, const HttpContext& context);
 
 /// Completes an answer that has a lod_job.
-void take_lod(HttpAnswer& answer, const Result<LodFilePtr>& made);
+void take_lod(HttpAnswer& answer, const LodOutcome& outcome);
 
 /// An answer that is only an error, for what never became a request too.
 HttpAnswer error_answer(int status, std::string_view message);

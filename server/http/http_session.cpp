@@ -5,6 +5,7 @@
 
 #include <boost/asio/post.hpp>
 
+#include "server/access/signed_query.h"
 #include "server/log/structured_log.h"
 
 namespace pmesh {
@@ -15,7 +16,7 @@ namespace {
 
 using Clock = Deadline::Clock;
 
-/// A text of at most this size goes out in one piece with its head.
+/// A body in memory of at most this size goes out in one piece with its head.
 constexpr std::size_t kShortBytes = 4096;
 
 /// Now, as the Date field has it; remade once a second on each thread.
@@ -112,8 +113,9 @@ Awaitable<bool> HttpSession::answer_request() {
   HttpAnswer answer = place ? judge() : busy_answer(429, "too many requests");
   if (!place) answer.limit = LimitName::connections_per_address;
   if (answer.lod_job) {
-    const Result<LodFilePtr> made = co_await make_lod(*answer.lod_job);
-    take_lod(answer, made);
+    answer.lod_job->client = counted_client();
+    const LodOutcome outcome = co_await make_lod(*answer.lod_job);
+    take_lod(answer, outcome);
   }
   const bool talks_too_soon = answer.status == 101 && !parser_.empty();
   if (talks_too_soon) {
@@ -137,7 +139,7 @@ Awaitable<bool> HttpSession::answer_refusal(int status) {
   HttpAnswer answer = error_answer(status, message_of(status));
   answer.limit = status == 408 ? LimitName::header_timeout : parser_.limit();
   const Clock::time_point begun = Clock::now();
-  request_client_.clear();
+  request_client_.reset();
   const bool sent = co_await send(answer, false);
   record(answer, {}, begun);
   if (sent) co_await channel_.close_gently();
@@ -146,6 +148,7 @@ Awaitable<bool> HttpSession::answer_refusal(int status) {
 
 HttpAnswer HttpSession::judge() const {
   return answer_http(parser_.request(), {.store = services().store,
+                                         .catalogue = services().catalogue,
                                          .access = policy().access,
                                          .limits = limits(),
                                          .most_lod_faces = services().most_lod_faces,
@@ -157,42 +160,52 @@ HttpAnswer HttpSession::judge() const {
 /// The place that the client of a trusted proxy has for this request; nothing if it has too many
 /// under way. Other clients have one for the whole connection.
 std::optional<AddressCounts::Slot> HttpSession::place_of_client() {
-  request_client_.clear();
+  request_client_.reset();
   if (!services().proxies.contains(client())) return AddressCounts::Slot();
-  const auto client_behind = services().proxies.client_of(client(), parser_.forwarded_for());
-  request_client_ = client_behind.to_string();
-  if (services().proxies.contains(client_behind)) return AddressCounts::Slot();
-  return services().addresses.enter(client_behind);
+  request_client_ = services().proxies.client_of(client(), parser_.forwarded_for());
+  const auto counted = counted_client();
+  return counted ? services().addresses.enter(*counted) : AddressCounts::Slot();
+}
+
+boost::asio::ip::address HttpSession::client_of_request() const {
+  return request_client_.value_or(client());
+}
+
+/// The same; nothing if that is a trusted proxy, which may stand for any number of clients.
+std::optional<boost::asio::ip::address> HttpSession::counted_client() const {
+  const auto from = client_of_request();
+  return services().proxies.contains(from) ? std::nullopt : std::optional(from);
 }
 
 /// Waits for a worker to be done with the job.
-Awaitable<Result<LodFilePtr>> HttpSession::make_lod(const LodJob& job) {
+Awaitable<LodOutcome> HttpSession::make_lod(const LodJob& job) {
   constexpr asio::use_awaitable_t<Executor> kToken;
   const auto initiate = [this, &job](auto handler) {
     const auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-    services().lod.get(job, [shared, executor = channel_.executor()](const auto& made) {
-      asio::post(executor, [shared, made] { std::move (*shared)(made); });
+    services().lod.get(job, [shared, executor = channel_.executor()](const LodOutcome& outcome) {
+      asio::post(executor, [shared, outcome] { std::move (*shared)(outcome); });
     });
   };
-  Result<LodFilePtr> made =
-      co_await asio::async_initiate<const asio::use_awaitable_t<Executor>&,
-                                    void(Result<LodFilePtr>)>(initiate, kToken);
-  co_return made;
+  LodOutcome outcome =
+      co_await asio::async_initiate<const asio::use_awaitable_t<Executor>&, void(LodOutcome)>(
+          initiate, kToken);
+  co_return outcome;
 }
 
 /// False if the connection must be cut: the peer has not got the whole answer.
 Awaitable<bool> HttpSession::send(const HttpAnswer& answer, bool keep_alive) {
   std::string head = head_text(answer, http_date(), keep_alive);
   const bool has_body = answer.may_have_body() && !answer.head_only;
-  const bool is_short = answer.text.size() <= kShortBytes;
-  if (has_body && is_short) head += answer.text;
+  const ByteView body = has_body ? answer.body() : ByteView();
+  const bool is_short = body.size() <= kShortBytes;
+  if (is_short) head.append(body.begin(), body.end());
   Channel::Parcel parcel{as_bytes(head)};
   if (has_body && answer.mesh) parcel = {as_bytes(head), answer.mesh.get(), answer.span};
   const WireStep::Kind need = channel_.push(parcel);
   bool sent = need == WireStep::moved;
-  if (!sent) sent = co_await channel_.send(parcel);
-  if (sent && has_body && (answer.lod || !is_short)) {
-    parcel = {answer.lod ? ByteView(answer.lod->bytes) : as_bytes(answer.text)};
+  if (!sent) sent = co_await channel_.send_rest(parcel, need);
+  if (sent && !is_short) {
+    parcel = {body};
     sent = co_await channel_.send(parcel);
   }
   co_return sent;
@@ -212,18 +225,15 @@ void HttpSession::record(const HttpAnswer& answer, const HttpRequest& request,
 /// A line about the answer. What was no request has neither method nor target.
 void HttpSession::log(const HttpAnswer& answer, const HttpRequest& request,
                       Clock::duration duration) const {
-  const std::string from = name_of_client();
+  const std::string from = client_of_request().to_string();
+  const std::string target = hide_signatures(request.target);
   log_event(spdlog::level::info, "answered",
             {{"client", std::string_view(from)},
              {"method", request.method},
-             {"target", request.target},
+             {"target", std::string_view(target)},
              {"status", std::int64_t{answer.status}},
              {"bytes", answer.head_only ? 0 : answer.body_bytes()},
              {"seconds", std::chrono::duration<double>(duration).count()}});
-}
-
-std::string HttpSession::name_of_client() const {
-  return request_client_.empty() ? client().to_string() : request_client_;
 }
 
 Awaitable<void> HttpSession::become_websocket(const std::string& id) {
@@ -231,7 +241,7 @@ Awaitable<void> HttpSession::become_websocket(const std::string& id) {
   const HttpRequest request = parser_.request();
   const std::size_t question = std::min(request.target.find('?'), request.target.size() - 1);
   websocket_ = std::make_unique<WebSocketSession>(
-      channel_, services(), policy_pointer(), name_of_client(),
+      channel_, services(), policy_pointer(), client_of_request().to_string(),
       FrameCredentials{.authorization = std::string(request.authorization),
                        .id = id,
                        .query = std::string(request.target.substr(question + 1))});

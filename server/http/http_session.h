@@ -40,18 +40,19 @@ class HttpSession final : public Session {
   Awaitable<bool> answer_refusal(int status);
   HttpAnswer judge() const;
   std::optional<AddressCounts::Slot> place_of_client();
-  Awaitable<Result<LodFilePtr>> make_lod(const LodJob& job);
+  Awaitable<LodOutcome> make_lod(const LodJob& job);
   Awaitable<bool> send(const HttpAnswer& answer, bool keep_alive);
   void record(const HttpAnswer& answer, const HttpRequest& request,
               Deadline::Clock::time_point begun);
   void log(const HttpAnswer& answer, const HttpRequest& request,
            Deadline::Clock::duration duration) const;
-  std::string name_of_client() const;
+  boost::asio::ip::address client_of_request() const;
+  std::optional<boost::asio::ip::address> counted_client() const;
   Awaitable<void> become_websocket(const std::string& id);
 
   RequestParser parser_{limits()};
-  std::array<char, 512> buffer_;  // an idle connection holds it too
-  std::string request_client_;    // whom the request is from, if a proxy passed it on
+  std::array<char, 512> buffer_;                            // an idle connection holds it too
+  std::optional<boost::asio::ip::address> request_client_;  // if a proxy has passed it on
   std::unique_ptr<WebSocketSession> websocket_;
   bool is_first_ = true;  // no request has come yet
   bool idle_ = false;     // between requests

@@ -19,10 +19,12 @@ constexpr std::string_view kHeadEnd = "\r\n\r\n";
 /// Empty lines before a request are let pass (RFC 9112, 2.2), but not for ever.
 constexpr int kMostEmptyLines = 8;
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 bool is_token_character(char c) {
   const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  const bool is_digit = c >= '0' && c <= '9';
-  return is_letter || is_digit || std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string::npos;
+  return is_letter || is_digit(c) ||
+         std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string::npos;
 }
 
 bool is_token(std::string_view text) {
@@ -67,6 +69,35 @@ std::string_view take_line(std::string_view& head) {
 bool says_no_body(const RequestParser::Message& message) {
   const auto [first, last] = message.equal_range(http::field::content_length);
   return first == last || (std::next(first) == last && first->value() == "0");
+}
+
+/// What the name of a host is made of: RFC 3986's unreserved characters, sub-delims and escapes.
+bool is_name_character(char c) {
+  return is_token_character(c) ? std::string_view("#^`|").find(c) == std::string::npos
+                               : std::string_view("(),;=").find(c) != std::string::npos;
+}
+
+/// What stands in the brackets of an address.
+bool is_literal_character(char c) { return c == ':' || (c != '%' && is_name_character(c)); }
+
+/// Whether `text` is what may follow a host: nothing, or a colon and a port, which may be empty.
+bool is_port(std::string_view text) {
+  return text.empty() ||
+         (text.front() == ':' && std::all_of(text.begin() + 1, text.end(), is_digit));
+}
+
+/// Whether `value` can be that of a Host field (RFC 9112, 3.2). An empty one can.
+bool is_host(std::string_view value) {
+  if (!value.starts_with('[')) {
+    const std::string_view name = value.substr(0, value.find(':'));
+    return std::all_of(name.begin(), name.end(), is_name_character) &&
+           is_port(value.substr(name.size()));
+  }
+  const std::size_t end = value.find(']');
+  if (end == std::string_view::npos) return false;
+  const std::string_view address = value.substr(1, end - 1);
+  return !address.empty() && std::all_of(address.begin(), address.end(), is_literal_character) &&
+         is_port(value.substr(end + 1));
 }
 
 /// Whether Beast will accept it: then the answer is 101, and nothing else.
@@ -142,6 +173,7 @@ RequestParser::Step RequestParser::check_message() {
   if (fields > limits_.header_fields) return refuse(431, LimitName::header_fields);
   const std::size_t hosts = message.count(http::field::host);
   if (hosts > 1 || (hosts == 0 && message.version() >= 11)) return refuse(400);
+  if (!is_host(message[http::field::host])) return refuse(400);
   if (message.count(http::field::transfer_encoding) > 0) return refuse(413);
   if (!says_no_body(message)) return refuse(413);
   if (message.target().size() > limits_.target_bytes) return refuse(414, LimitName::target_bytes);
@@ -150,18 +182,22 @@ RequestParser::Step RequestParser::check_message() {
 
 HttpRequest RequestParser::request() const {
   const Message& message = parser_->get();
-  return {.method = message.method_string(),
-          .target = message.target(),
-          .range = message[http::field::range],
-          .if_range = message[http::field::if_range],
-          .if_none_match = message[http::field::if_none_match],
-          .authorization = message[http::field::authorization],
-          .upgrade = is_websocket_upgrade(message)};
+  const bool is_one_range =
+      message.count(http::field::range) == 1 && message.count(http::field::if_range) <= 1;
+  return {
+      .method = message.method_string(),
+      .target = message.target(),
+      .range = is_one_range ? std::string_view(message[http::field::range]) : std::string_view(),
+      .if_range = message[http::field::if_range],
+      .if_none_match = list_of("If-None-Match"),
+      .authorization = message[http::field::authorization],
+      .upgrade = is_websocket_upgrade(message)};
 }
 
-std::string RequestParser::forwarded_for() const {
+/// The values of all fields of that name as one list (RFC 9110, 5.3).
+std::string RequestParser::list_of(std::string_view name) const {
   std::string list;
-  const auto [first, last] = message().equal_range("X-Forwarded-For");
+  const auto [first, last] = message().equal_range({name.data(), name.size()});
   for (auto field = first; field != last; ++field) {
     if (!list.empty()) list.push_back(',');
     list.append(field->value());

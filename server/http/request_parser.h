@@ -41,7 +41,7 @@ class RequestParser {
   HttpRequest request() const;
   const Message& message() const { return parser_->get(); }
   /// All X-Forwarded-For fields as one list. Precondition: as request().
-  std::string forwarded_for() const;
+  std::string forwarded_for() const { return list_of("X-Forwarded-For"); }
   bool keep_alive() const { return message().keep_alive(); }
 
   /// The status; 0 if nothing was refused.
@@ -56,6 +56,7 @@ class RequestParser {
   Step refuse(int status, std::optional<LimitName> limit = {});
   Step parse_head(std::string_view head);
   Step check_message();
+  std::string list_of(std::string_view name) const;
 
   const SessionLimits limits_;
   std::optional<Parser> parser_;

@@ -18,13 +18,14 @@ Result<LodFilePtr> make(const LodKey& key, const LodJob& job, std::uint64_t most
   });
 }
 
-void tell(const std::vector<LodService::Done>& waiting, const Result<LodFilePtr>& result) {
-  for (const LodService::Done& done : waiting) done(result);
+void tell(const std::vector<LodService::Done>& waiting, const LodOutcome& outcome) {
+  for (const LodService::Done& done : waiting) done(outcome);
 }
 
 }  // namespace
 
-LodService::LodService(const LodLimits& limits) : limits_(limits), cache_(limits.cache_bytes) {
+LodService::LodService(const LodLimits& limits)
+    : limits_(limits), clients_(limits.per_address), cache_(limits.cache_bytes) {
   assert(limits.workers > 0);
   for (unsigned i = 0; i < limits.workers; ++i) workers_.emplace_back([this] { work(); });
 }
@@ -37,41 +38,47 @@ LodService::~LodService() {
   changed_.notify_all();
   for (std::thread& worker : workers_) worker.join();
   for (const auto& [key, work] : under_way_) {
-    tell(work.waiting, runtime_error("the server is shutting down"));
+    tell(work.waiting, {runtime_error("the server is shutting down")});
   }
 }
 
 void LodService::get(const LodJob& job, Done done) {
   const FileIndex& index = job.mesh->index();
   const Result<Resolution> level = resolve_lod(job.wish, index, limits_.faces);
-  if (!level) return done(level.error());
+  if (!level) return done({level.error()});
   const LodRequest wish = canonical_wish(job.wish, *level, index);
   const LodKey key{job.mesh->hash(), job.format, to_query(wish), level->reached};
-  const auto answer = answer_or_enqueue(key, {job.mesh, wish, job.format}, done);
+  const auto answer = answer_or_enqueue(key, {job.mesh, wish, job.format, job.client}, done);
   if (answer) done(*answer);
 }
 
-std::optional<Result<LodFilePtr>> LodService::answer_or_enqueue(const LodKey& key, LodJob job,
-                                                                Done& done) {
+std::optional<LodOutcome> LodService::answer_or_enqueue(const LodKey& key, LodJob job, Done& done) {
   const std::lock_guard lock(mutex_);
   if (LodFilePtr kept = cache_.find(key)) {
     ++counts_.hits;
-    return kept;
+    return LodOutcome{kept};
   }
   if (const auto found = under_way_.find(key); found != under_way_.end()) {
     found->second.waiting.push_back(std::move(done));
     ++counts_.merged;
     return std::nullopt;
   }
+  auto slot = job.client ? clients_.enter(*job.client) : AddressCounts::Slot();
+  if (!slot) return refuse(LimitName::lod_per_address, "the client waits for too many levels");
   if (queue_.size() >= limits_.queue) {
-    ++counts_.refused;
-    return Error{ErrorCode::out_of_resources, "too many levels of detail are waiting to be made"};
+    return refuse(LimitName::lod_queue, "too many levels of detail are waiting to be made");
   }
-  const auto place = under_way_.try_emplace(key, Work{std::move(job), {}}).first;
+  const auto place = under_way_.try_emplace(key, Work{std::move(job), std::move(*slot)}).first;
   place->second.waiting.push_back(std::move(done));
   queue_.push_back(place);
   changed_.notify_one();
   return std::nullopt;
+}
+
+/// Needs the mutex.
+LodOutcome LodService::refuse(LimitName limit, std::string_view why) {
+  ++counts_.refused;
+  return {Error{ErrorCode::out_of_resources, std::string(why)}, limit};
 }
 
 LodStatistics LodService::statistics() const {
@@ -107,7 +114,9 @@ void LodService::finish(WorkMap::iterator place, const Result<LodFilePtr>& made,
     if (made) keep(place->first, *made);
     finished = under_way_.extract(place);
   }
-  tell(finished.mapped().waiting, made);
+  Work& work = finished.mapped();
+  work.place = {};  // who is told may ask for the next one at once
+  tell(work.waiting, {made});
 }
 
 void LodService::keep(const LodKey& key, const LodFilePtr& file) {

@@ -92,18 +92,20 @@ enum class LimitName : std::uint8_t {
   queued_bytes,  // reading stopped for a while
   streams,
   lod_queue,
+  lod_per_address,
   lod_faces,
   access,
   count_
 };
-inline constexpr std::array<std::string_view, 14> kLimitNames{
-    "connections",    "connections_per_address",
-    "header_bytes",   "header_fields",
-    "target_bytes",   "ranges",
-    "header_timeout", "idle_timeout",
-    "send_timeout",   "queued_bytes",
-    "streams",        "lod_queue",
-    "lod_faces",      "access"};
+inline constexpr std::array<std::string_view, 15> kLimitNames{
+    "connections",     "connections_per_address",
+    "header_bytes",    "header_fields",
+    "target_bytes",    "ranges",
+    "header_timeout",  "idle_timeout",
+    "send_timeout",    "queued_bytes",
+    "streams",         "lod_queue",
+    "lod_per_address", "lod_faces",
+    "access"};
 
 enum class ReloadResult : std::uint8_t { done, failed, count_ };
 inline constexpr std::array<std::string_view, 2> kReloadResultNames{"done", "failed"};

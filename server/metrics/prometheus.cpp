@@ -104,7 +104,7 @@ void write_lod(Writer& out, const LodStatistics& lod) {
               static_cast<double>(lod.hits));
   out.counter("pmesh_lod_merged_total", "Requests that waited for one under way.",
               static_cast<double>(lod.merged));
-  out.counter("pmesh_lod_refused_total", "Requests refused because the queue was full.",
+  out.counter("pmesh_lod_refused_total", "Requests refused for want of a place in the queue.",
               static_cast<double>(lod.refused));
   out.counter("pmesh_lod_seconds_total", "Time spent making them.", lod.seconds);
   out.gauge("pmesh_lod_queued", "Levels of detail waiting to be made.",

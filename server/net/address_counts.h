@@ -1,4 +1,5 @@
-// How many connections, or requests behind a proxy, each client address has under way.
+// How many of something each client address has under way: connections, requests behind a proxy,
+// levels of detail.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 namespace pmesh {
 
 /// An IPv6 address counts by its first 64 bits: whoever has one has all of those. Memory: what is
-/// under way, so bounded by the limit on connections. Threads: all members may be called at once;
+/// under way, which other limits bound. Threads: all members may be called at once;
 /// slots must not outlive the counts.
 class AddressCounts {
  public:

@@ -32,7 +32,7 @@ constexpr std::uint64_t kPushBytes = 4 * kSendFileBytes;
 constexpr std::uint64_t kMoreThanAKernelTakes = 512 * 1024;
 constexpr std::chrono::seconds kLiveWithin{1};
 
-/// Between two looks at whether a slow peer takes anything.
+/// Between two looks at whether a slow peer takes anything; sooner if the send timeout is short.
 constexpr std::chrono::milliseconds kProgressInterval{1000};
 
 constexpr std::chrono::seconds kLingerTime{1};
@@ -56,6 +56,7 @@ Channel::Channel(Socket socket, const SessionLimits& limits)
     : socket_(std::move(socket)),
       executor_(socket_.get_executor()),
       send_timeout_(limits.send_timeout),
+      progress_interval_(std::min(limits.send_timeout / 4, kProgressInterval)),
       send_buffer_bytes_(limits.send_buffer_bytes),
       live_send_buffer_bytes_(std::max(limits.send_buffer_bytes, limits.live_send_buffer_bytes)) {
   error_code ignored;
@@ -205,13 +206,17 @@ WireStep::Kind Channel::push(Parcel& parcel) {
 }
 
 Awaitable<bool> Channel::send(Parcel parcel) {
+  const WireStep::Kind need = push(parcel);
+  return send_rest(parcel, need);
+}
+
+Awaitable<bool> Channel::send_rest(Parcel parcel, WireStep::Kind need) {
   bool connected = true;
-  while (connected) {
-    const WireStep::Kind need = push(parcel);
-    if (need == WireStep::moved) co_return true;
+  while (connected && need != WireStep::moved) {
     connected = co_await wait_to_send(need);
+    if (connected) need = push(parcel);
   }
-  co_return false;
+  co_return connected;
 }
 
 /// Waits until a step that could not be made can be; false if it never can.
@@ -224,20 +229,25 @@ Awaitable<bool> Channel::wait_to_send(WireStep::Kind need) {
     std::tie(error) = co_await socket_.async_wait(wait_of(need), kAwait);
   } while (error == asio::error::operation_aborted && socket_.is_open());
   send_deadline_->clear();
-  const bool is_live =
-      Deadline::Clock::now() - begun < kLiveWithin &&
-      sent_bytes_ >= static_cast<std::uint64_t>(unsent_bytes()) + kMoreThanAKernelTakes;
+  const bool is_live = Deadline::Clock::now() - begun < kLiveWithin && has_read();
   if (!error) set_send_buffer(is_live ? live_send_buffer_bytes_ : send_buffer_bytes_);
   co_return !error;
 }
 
+/// Whether the peer has taken more than its kernel does by itself. What it was seen to have taken
+/// once, it has.
+bool Channel::has_read() {
+  if (send_buffer_ == live_send_buffer_bytes_) return true;
+  return sent_bytes_ >= static_cast<std::uint64_t>(unsent_bytes()) + kMoreThanAKernelTakes;
+}
+
 /// From now on the peer has the send timeout to take a byte. The socket becomes writable only when
 /// a third of its buffer is free, which a slow reader may need longer for: so the queue is looked
-/// at.
+/// at, first for how much there is (most waits end before).
 void Channel::expect_progress() {
-  unsent_ = unsent_bytes();
+  unsent_ = 0;
   progressed_ = Deadline::Clock::now();
-  send_deadline_->set(progressed_ + std::min(send_timeout_, kProgressInterval));
+  send_deadline_->set(progressed_ + progress_interval_);
 }
 
 void Channel::check_progress() {
@@ -249,7 +259,7 @@ void Channel::check_progress() {
     send_timed_out_ = true;
     reset();
   } else {
-    send_deadline_->set(std::min(now + kProgressInterval, progressed_ + send_timeout_));
+    send_deadline_->set(std::min(now + progress_interval_, progressed_ + send_timeout_));
   }
 }
 

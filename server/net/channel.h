@@ -56,12 +56,16 @@ class Channel {
     bool empty() const { return head.empty() && span.size() == 0; }
   };
 
-  /// Sends all of it; false if that failed or the file is no longer intact. Then the peer has been
-  /// sent too little, and the connection must be cut. What is pointed to must stay until then.
+  /// Sends all of it, what can be sent at once before it returns; false if that failed or the file
+  /// is no longer intact. Then the peer has been sent too little, and the connection must be cut.
+  /// What is pointed to must stay until then.
   Awaitable<bool> send(Parcel parcel);
-  /// The same, without waiting: sends what can be sent now and takes it off `parcel`. Often that is
-  /// all, and no coroutine is needed. Says what is to be waited for, or `moved` once all is sent.
+  /// The first half of send(), without waiting: sends what can be sent now and takes it off
+  /// `parcel`. Often that is all, and no coroutine is needed. Says what is to be waited for, or
+  /// `moved` once all is sent.
   WireStep::Kind push(Parcel& parcel);
+  /// The other half: what push() left in `parcel` when it said `need`.
+  Awaitable<bool> send_rest(Parcel parcel, WireStep::Kind need);
   /// Whether the last send failed because the peer took no byte for too long.
   bool send_timed_out() const { return send_timed_out_; }
   /// Handed to the kernel so far, without what TLS adds.
@@ -82,6 +86,7 @@ class Channel {
   WireStep write(const Parcel& parcel);
   WireStep write_record(const Parcel& parcel);
   Awaitable<bool> wait_to_send(WireStep::Kind need);
+  bool has_read();
   void expect_progress();
   void check_progress();
   int unsent_bytes();
@@ -91,13 +96,14 @@ class Channel {
   Executor executor_;
   std::optional<TlsStream> tls_;
   const std::chrono::milliseconds send_timeout_;
+  const std::chrono::milliseconds progress_interval_;
   const int send_buffer_bytes_;
   const int live_send_buffer_bytes_;
   int send_buffer_ = 0;  // as it is set now
   std::shared_ptr<Deadline> receive_deadline_;
   std::shared_ptr<Deadline> send_deadline_;
   std::uint64_t sent_bytes_ = 0;
-  int unsent_ = 0;  // bytes that the peer had not taken when last looked at
+  int unsent_ = 0;  // bytes that the peer had not taken at the last look; 0: not looked yet
   Deadline::Clock::time_point progressed_{};  // when it was seen to take some
   bool timed_out_ = false;
   bool interrupted_ = false;

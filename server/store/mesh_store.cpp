@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
+#include "core/files/out_of_memory.h"
 #include "protocol/mesh_id.h"
 #include "server/store/mesh_scan.h"
 
@@ -31,7 +32,21 @@ bool changed_in_place(const FileStamp& before, const FileStamp& now) {
   return before.device == now.device && before.inode == now.inode && before != now;
 }
 
+/// `mesh`, opened from `path`, if its base and chunks are what its index promises.
+Result<MeshPtr> checked(const MeshPtr& mesh, const std::string& path) {
+  return catching_out_of_memory([&]() -> Result<MeshPtr> {
+    if (Status sections = mesh->check_sections(); !sections) return sections.error();
+    if (!mesh->intact()) return runtime_error(path + ": changed while it was checked");
+    return mesh;
+  });
+}
+
 }  // namespace
+
+/// Whether the file that has the stamp `now` is one that was known, with other bytes.
+bool MeshStore::Entry::was_written_to(const FileStamp& now) const {
+  return changed_in_place(stamp, now) || changed_in_place(attempted, now);
+}
 
 Result<std::unique_ptr<MeshStore>> MeshStore::open(const std::string& directory,
                                                    std::chrono::milliseconds rescan_interval,
@@ -72,7 +87,8 @@ Result<MeshPtr> MeshStore::find(const std::string& id) {
   {
     const std::shared_lock lock(mutex_);
     const auto entry = entries_.find(id);
-    if (entry != entries_.end() && entry->second.stamp == *stamp) return entry->second.mesh;
+    const bool is_known = entry != entries_.end() && entry->second.is_judged();
+    if (is_known && entry->second.stamp == *stamp) return entry->second.mesh;
   }
   return refresh(id, *stamp);
 }
@@ -97,6 +113,11 @@ std::vector<MeshPtr> MeshStore::list() {
     if (entry.mesh) meshes.push_back(entry.mesh);
   }
   return meshes;
+}
+
+std::uint64_t MeshStore::generation() {
+  rescan();
+  return generation_;
 }
 
 std::string MeshStore::path_of(const std::string& id) const {
@@ -136,44 +157,68 @@ void MeshStore::forget_missing() {
   }
 }
 
-Result<MeshPtr> MeshStore::load(const std::string& id, const Entry& before) const {
+Result<MeshPtr> MeshStore::load(const std::string& id) const {
   const std::string path = path_of(id);
   if (Status place = check_place(root_, path); !place) return place.error();
-  const Result<MeshPtr> mesh = MeshFile::open(id, path);
-  if (!mesh || !changed_in_place(before.stamp, (*mesh)->stamp())) return mesh;
-  if (Status sections = (*mesh)->check_sections(); !sections) return sections.error();
-  if (!(*mesh)->intact()) return runtime_error(path + ": changed while it was checked");
-  return mesh;
+  return MeshFile::open(id, path);
 }
 
 /// Opens the file of `id`, which had `stamp`, and makes it the one that is found. A file that is
 /// not one to serve is remembered, so as not to be opened and logged again; one that could not be
-/// opened for a reason that may pass is tried again, and logged once.
+/// judged for a reason that may pass is tried again, and logged once.
 Result<MeshPtr> MeshStore::refresh(const std::string& id, const FileStamp& stamp) {
-  Entry entry = entry_of(id).value_or(Entry{});
-  if (!has_room(entry)) {
+  const Entry before = entry_of(id).value_or(Entry{});
+  const Error being_checked = runtime_error(path_of(id) + ": is being checked");
+  if (before.checking) return being_checked;
+  if (!has_room(before)) {
     return Error{ErrorCode::out_of_resources, path_of(id) + ": too many meshes are open"};
   }
-  const Result<MeshPtr> loaded = load(id, entry);
-  if (!loaded && entry.attempted != stamp) spdlog::warn("skipped {}", loaded.error().message);
-  if (!loaded && may_pass(loaded.error())) {
-    entry.attempted = stamp;
-    put(id, entry);
-    return loaded.error();
-  }
+  Result<MeshPtr> loaded = load(id);
+  const bool needs_check = loaded && before.was_written_to((*loaded)->stamp());
+  if (needs_check && !begin_check(id, before)) return being_checked;
+  if (needs_check) loaded = checked(*loaded, path_of(id));
+  const bool is_open_question = !loaded && may_pass(loaded.error());
   // A file replaced between stat and open has the stamp of its mesh.
   const MeshPtr mesh = loaded ? *loaded : nullptr;
-  put(id, {mesh ? mesh->stamp() : stamp, mesh, {}});
+  Entry now{.stamp = mesh ? mesh->stamp() : stamp, .mesh = mesh, .attempted = {}};
+  if (is_open_question) now = {.stamp = before.stamp, .mesh = nullptr, .attempted = stamp};
+  put(id, std::move(now), needs_check);
+  if (!loaded && before.attempted != stamp) spdlog::warn("skipped {}", loaded.error().message);
+  if (is_open_question) return loaded.error();
   return mesh;
 }
 
-void MeshStore::put(const std::string& id, Entry entry) {
+/// Whether the calling thread is the one to check the file of `id`, of which `before` was known:
+/// one reads it, not all who ask. It must put() what came of it, as the checker.
+bool MeshStore::begin_check(const std::string& id, const Entry& before) {
+  const std::unique_lock lock(mutex_);
+  const auto found = entries_.find(id);
+  if (found == entries_.end()) return false;
+  Entry& entry = found->second;
+  const bool is_judged_since = entry.stamp != before.stamp || entry.attempted != before.attempted;
+  if (entry.checking || is_judged_since) return false;
+  set_mesh(entry, nullptr);  // whose bytes were written over
+  entry.checking = true;
+  return true;
+}
+
+/// While a file is checked, only the checker has a say.
+void MeshStore::put(const std::string& id, Entry entry, bool is_checker) {
   const std::unique_lock lock(mutex_);
   Entry& place = entries_[id];
-  if (entry.mesh) ++mesh_count_;
-  std::swap(place, entry);
+  if (place.checking && !is_checker) return;
+  set_mesh(place, entry.mesh);
+  place = std::move(entry);
+}
+
+/// Gives an entry another mesh, or none. Needs the mutex.
+void MeshStore::set_mesh(Entry& entry, MeshPtr mesh) {
+  if (entry.mesh == mesh) return;
+  if (mesh) ++mesh_count_;
   if (entry.mesh) --mesh_count_;
-  if (entry.mesh != place.mesh) retire(entry.mesh);
+  ++generation_;
+  std::swap(entry.mesh, mesh);
+  retire(mesh);
 }
 
 void MeshStore::forget(const std::string& id) {
@@ -184,8 +229,7 @@ void MeshStore::forget(const std::string& id) {
   const std::unique_lock lock(mutex_);
   const auto entry = entries_.find(id);
   if (entry == entries_.end()) return;
-  if (entry->second.mesh) --mesh_count_;
-  retire(entry->second.mesh);
+  set_mesh(entry->second, nullptr);
   entries_.erase(entry);
 }
 

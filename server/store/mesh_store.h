@@ -6,7 +6,8 @@
 //
 // A file is opened by its header and index alone: that its base and chunks are what the index
 // promises is the writer's word (`pmesh verify` checks it). A file that was written to in place
-// while it was served gives that word no more: its base and chunks are read and checked too.
+// while it was served gives that word no more: its base and chunks are read and checked too, by one
+// thread; whoever asks meanwhile is told to come again.
 #pragma once
 
 #include <atomic>
@@ -39,7 +40,7 @@ class MeshStore {
 
   /// The mesh that stands under this id in the directory now, or stood there a look interval ago;
   /// null if none does. Fails (runtime, out_of_resources) if a file stands there that cannot be
-  /// opened now: a later try may succeed.
+  /// opened now or is being checked: a later try may succeed. Until one does, all fail.
   Result<MeshPtr> find(const std::string& id);
 
   /// The same with this hash: the mesh that stands there now, or one replaced since that a
@@ -49,12 +50,20 @@ class MeshStore {
   /// All meshes by id. New and removed files show up after at most the rescan interval.
   std::vector<MeshPtr> list();
 
+  /// A number that grows whenever what list() gives changes. What list() gives after this call is
+  /// not older than the number.
+  std::uint64_t generation();
+
  private:
   /// What is known of the file of an id.
   struct Entry {
-    FileStamp stamp;      // of the file when it was last judged; none if it never was
-    MeshPtr mesh;         // null if the file, as stamped, is not one to serve
-    FileStamp attempted;  // of the file when last it could not be opened, which is in the log
+    FileStamp stamp;        // of the file when it was last judged; none if it never was
+    MeshPtr mesh;           // null if the file, as stamped, is not one to serve, or not judged now
+    FileStamp attempted;    // of the file if it could not be judged, which is in the log
+    bool checking = false;  // a thread is reading all of it
+
+    bool is_judged() const { return !checking && attempted == FileStamp{}; }
+    bool was_written_to(const FileStamp& now) const;
   };
 
   MeshStore(std::string root, std::chrono::milliseconds rescan_interval,
@@ -65,9 +74,11 @@ class MeshStore {
   MeshPtr known_mesh(const std::string& id) const;
   bool has_room(const Entry& before);
   void forget_missing();
-  Result<MeshPtr> load(const std::string& id, const Entry& before) const;
+  Result<MeshPtr> load(const std::string& id) const;
   Result<MeshPtr> refresh(const std::string& id, const FileStamp& stamp);
-  void put(const std::string& id, Entry entry);
+  bool begin_check(const std::string& id, const Entry& before);
+  void put(const std::string& id, Entry entry, bool is_checker);
+  void set_mesh(Entry& entry, MeshPtr mesh);
   void forget(const std::string& id);
   void retire(const MeshPtr& mesh);
   void rescan();
@@ -82,6 +93,7 @@ class MeshStore {
   std::map<std::string, Entry> entries_;
   std::size_t mesh_count_ = 0;  // of entries with a mesh
   std::vector<std::weak_ptr<const MeshFile>> retired_;
+  std::atomic<std::uint64_t> generation_ = 0;  // changed under the mutex, along with a mesh
 
   std::atomic<bool> said_full_ = false;
   Look full_look_;

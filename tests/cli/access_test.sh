@@ -12,7 +12,7 @@ mkdir meshes
 printf 'first-token-0123456789\n' >tokens
 printf '0123456789abcdef0123456789abcdef' >key
 export PMESH_TOKEN_FILE=$work/tokens PMESH_URL_KEY_FILE=$work/key
-start_server meshes
+PMESH_ACCESS_LOG=true start_server meshes
 
 # status TARGET CURL_OPTION...
 status() {
@@ -60,6 +60,8 @@ answers 403 "/other?$query"
 answers 403 "/torus?${query%?}x"
 answers 403 "/torus?expires=1&${query#*&}"
 answers 400 "/torus?$query&$query"
+grep -q "answered.*/torus?expires=[0-9]*&signature=\.\.\." serve.log || fail "no answer in the log"
+if grep -q 'signature=[0-9a-f]' serve.log; then fail "a signature in the log"; fi
 
 # Tokens are exchanged, without a dropped server; what is wrong changes nothing.
 printf 'second-token-0123456789\n' >tokens

@@ -33,8 +33,10 @@ inline MeshStore& two_meshes() {
 inline HttpAnswer checked_answer(const HttpRequest& request) {
   static const AccessPolicy access{AccessOptions{}};
   static const SessionLimits limits;
+  static CatalogueCache catalogue(two_meshes());
   static const std::function<std::string()> metrics_text = [] { return std::string("none 0\n"); };
   const HttpAnswer answer = answer_http(request, {.store = two_meshes(),
+                                                  .catalogue = catalogue,
                                                   .access = access,
                                                   .limits = limits,
                                                   .most_lod_faces = 1000,

@@ -187,6 +187,13 @@ void add_headers(std::vector<HostileRequest>& all) {
                            "GET /catalog HTTP/-1.1"}) {
     all.push_back({printable(line), std::string(line) + "\r\nHost: localhost\r\n\r\n" + kHidden});
   }
+  for (const char* host : {"local host", "localhost/catalog", "user@localhost",
+                           "localhost, elsewhere", "localhost:80:80", "localhost:x", "localhost#",
+                           "localhost?x", "::1", "[::1", "[]", "[::1]elsewhere", "[::1%25lo]",
+                           "\"localhost\"", "a\\b", "loc\xc3\xa4lhost", "<localhost>"}) {
+    all.push_back({std::string("Host ") + printable(host),
+                   std::string("GET /catalog HTTP/1.1\r\nHost: ") + host + "\r\n\r\n" + kHidden});
+  }
   Strings lines = {"Host: localhost\r\n",
                    "host: elsewhere\r\n",
                    "X y\r\n",
@@ -239,6 +246,8 @@ std::vector<HostileRequest> odd_requests() {
   for (const char* head :
        {"\r\nGET /catalog HTTP/1.1\r\nHost: localhost",
         "GET /catalog HTTP/1.1\r\nHost:",
+        "GET /catalog HTTP/1.1\r\nHost: [2001:db8::1]:80",
+        "GET /catalog HTTP/1.1\r\nHost: localhost\r\nRange: bytes=0-1\r\nRange: bytes=2-3",
         "GET /catalog HTTP/1.1\r\nhOST:\t localhost \t",
         "GET /catalog HTTP/1.0",
         "GET http://localhost/catalog HTTP/1.1\r\nHost: elsewhere",

@@ -64,6 +64,7 @@ for (const target of ['/', '/catalog', '/health', '/metrics', '/openapi.json', '
   await check(target.replace('sphere', '{id}'), target, 200);
 }
 await check('/catalog', '/catalog', 401, {});
+await checkUnchanged('/catalog', '/catalog');
 await check('/metrics', '/metrics', 401, {});
 
 await checkMeshRoute('/{id}', '/sphere');

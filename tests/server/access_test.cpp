@@ -103,6 +103,18 @@ TEST(SignedQuery, HasEachMemberOnce) {
   EXPECT_FALSE(split_query("signature=a&faces=1&signature=a"));
 }
 
+TEST(SignedQuery, IsHiddenInLogsAndNothingElseIs) {
+  EXPECT_EQ(hide_signatures("/bunny?faces=1&expires=7&signature=0ab"),
+            "/bunny?faces=1&expires=7&signature=...");
+  EXPECT_EQ(hide_signatures("/bunny?signature=0ab&faces=1&signature=1&signature="),
+            "/bunny?signature=...&faces=1&signature=...&signature=...");
+  for (const char* target :
+       {"", "*", "/", "?", "/bunny", "/bunny?", "/signature=1/x", "/bunny?faces=1&&expires=7&",
+        "/bunny?asignature=1&signatures=2&signature"}) {
+    EXPECT_EQ(hide_signatures(target), target);
+  }
+}
+
 TEST(Credentials, AreTokensOneALine) {
   EXPECT_EQ(*parse_tokens("# who\r\n\n  0123456789abcdef \r\nABCDEFGHIJKLMNOP-._~+/="),
             (std::vector<std::string>{"0123456789abcdef", "ABCDEFGHIJKLMNOP-._~+/="}));

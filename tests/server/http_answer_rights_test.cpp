@@ -16,9 +16,11 @@ TEST_F(HttpAnswerTest, FinishedLevelsAreAJobBeforeTheyAreAnAnswer) {
   EXPECT_EQ(answer.fields.find("Content-Type"), "model/gltf-binary");
   EXPECT_EQ(answer.fields.find("Cache-Control"), "no-cache");
 
-  take_lod(answer, std::make_shared<const LodFile>(LodFile{{1, 2, 3}, 20, 12, true}));
+  const auto file = std::make_shared<const LodFile>(LodFile{{1, 2, 3}, 20, 12, true});
+  take_lod(answer, {LodFilePtr(file)});
   EXPECT_EQ(answer.status, 200);
   EXPECT_EQ(answer.body_bytes(), 3u);
+  EXPECT_EQ(answer.body().data(), file->bytes.data());
   EXPECT_EQ(answer.fields.find("PMesh-Faces"), "20");
   EXPECT_EQ(answer.fields.find("PMesh-Reached"), "1");
 }
@@ -34,13 +36,14 @@ TEST_F(HttpAnswerTest, FinishedLevelsThatAreKnownAreNotMade) {
 
 TEST_F(HttpAnswerTest, FinishedLevelsThatCannotBeMadeAreErrors) {
   HttpAnswer busy = get("/bunny/lod.ply");
-  take_lod(busy, Error{ErrorCode::out_of_resources, "full"});
+  take_lod(busy, {Error{ErrorCode::out_of_resources, "full"}, LimitName::lod_per_address});
   EXPECT_EQ(busy.status, 503);
   EXPECT_EQ(busy.fields.find("Retry-After"), "1");
-  EXPECT_EQ(busy.limit, LimitName::lod_queue);
+  EXPECT_EQ(busy.limit, LimitName::lod_per_address);
   HttpAnswer failed = get("/bunny/lod.ply");
-  take_lod(failed, Error{ErrorCode::verification, "/secret/path: altered"});
+  take_lod(failed, {Error{ErrorCode::verification, "/secret/path: altered"}});
   EXPECT_EQ(failed.status, 500);
+  EXPECT_FALSE(failed.limit);
   EXPECT_EQ(failed.text.find("secret"), std::string::npos);
 }
 

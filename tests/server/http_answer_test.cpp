@@ -27,7 +27,31 @@ TEST_F(HttpAnswerTest, CatalogueListsTheMeshes) {
   EXPECT_EQ(answer.status, 200);
   EXPECT_EQ(answer.fields.find("Content-Type"), "application/json");
   EXPECT_EQ(answer.fields.find("Cache-Control"), "no-cache");
-  EXPECT_EQ(json::parse(answer.text)[0]["hash"], bunny_.hash());
+  EXPECT_EQ(json::parse(answer.body())[0]["hash"], bunny_.hash());
+}
+
+TEST_F(HttpAnswerTest, CatalogueIsOneTextForAllWhoAsk) {
+  const HttpAnswer first = get("/catalog"), second = get("/catalog", {.method = "HEAD"});
+  EXPECT_EQ(first.body().data(), second.body().data());
+  EXPECT_EQ(first.fields.find("ETag"), second.fields.find("ETag"));
+}
+
+TEST_F(HttpAnswerTest, CatalogueHasATagForEachStateOfTheMeshes) {
+  const HttpAnswer before = get("/catalog");
+  const std::string tag(before.fields.find("ETag"));
+  const HttpAnswer same = get("/catalog", {.if_none_match = tag});
+  EXPECT_EQ(same.status, 304);
+  EXPECT_EQ(same.body_bytes(), 0u);
+  EXPECT_EQ(same.fields.find("ETag"), tag);
+
+  directory_.write("third.pmesh", make_sample({100}, 3).bytes);
+  const HttpAnswer more = get("/catalog", {.if_none_match = tag});
+  EXPECT_EQ(more.status, 200);
+  EXPECT_EQ(json::parse(more.body()).size(), 3u);
+  EXPECT_EQ(json::parse(before.body()).size(), 2u);  // as whoever is being sent it needs it
+
+  std::filesystem::remove(directory_ / "third.pmesh");
+  EXPECT_EQ(get("/catalog", {.if_none_match = tag}).status, 304);
 }
 
 TEST_F(HttpAnswerTest, HealthIsNeverStored) {

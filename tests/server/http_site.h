@@ -18,6 +18,7 @@ class HttpSite {
 
   HttpContext context() {
     return {.store = *store_,
+            .catalogue = catalogue_,
             .access = access_,
             .limits = limits,
             .most_lod_faces = most_lod_faces,
@@ -36,6 +37,7 @@ class HttpSite {
   std::unique_ptr<MeshStore> store_ =
       MeshStore::open(directory_ / "", std::chrono::milliseconds(0), std::chrono::milliseconds(0))
           .value();
+  CatalogueCache catalogue_{*store_};
 };
 
 }  // namespace pmesh::testing

@@ -35,13 +35,14 @@ class ListenerTest : public ::testing::Test {
 
   const TemporaryDirectory directory_;
   const std::unique_ptr<MeshStore> store_ = MeshStore::open(directory_ / "").value();
+  CatalogueCache catalogue_{*store_};
   Metrics metrics_;
   AddressCounts addresses_{0};
   const TrustedProxies proxies_;
   CurrentPolicy policy_{make_policy({}).value()};
   Reactors reactors_{1};
   LodService lod_{LodLimits{}};
-  Services services_{*store_, lod_, metrics_, addresses_, proxies_, policy_, 0, {}};
+  Services services_{*store_, catalogue_, lod_, metrics_, addresses_, proxies_, policy_, 0, {}};
   SessionRegistry registry_{10};
   std::thread thread_;
 };

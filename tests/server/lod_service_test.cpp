@@ -19,18 +19,28 @@ LodJob job(const OpenedMesh& opened, const std::string& query, LodFormat format 
   return {opened.mesh(), parse_wish(query).value(), format};
 }
 
+/// The same, asked for by somebody at this address.
+LodJob job_of(const char* client, const OpenedMesh& opened, const std::string& query) {
+  LodJob wanted = job(opened, query);
+  wanted.client = boost::asio::ip::make_address(client);
+  return wanted;
+}
+
 /// Asks and waits.
-Result<LodFilePtr> asked(LodService& service, const LodJob& wanted) {
-  std::promise<Result<LodFilePtr>> answer;
-  service.get(wanted, [&](const Result<LodFilePtr>& result) { answer.set_value(result); });
+LodOutcome outcome_of(LodService& service, const LodJob& wanted) {
+  std::promise<LodOutcome> answer;
+  service.get(wanted, [&](const LodOutcome& outcome) { answer.set_value(outcome); });
   return answer.get_future().get();
+}
+Result<LodFilePtr> asked(LodService& service, const LodJob& wanted) {
+  return outcome_of(service, wanted).file;
 }
 
 /// Holds the only worker of a service until released, in the answer to a request.
 class HeldWorker {
  public:
   HeldWorker(LodService& service, const LodJob& wanted) {
-    service.get(wanted, [gates = gates_](const Result<LodFilePtr>&) {
+    service.get(wanted, [gates = gates_](const LodOutcome&) {
       gates->held.count_down();
       gates->released.wait();
     });
@@ -55,7 +65,7 @@ struct Answers {
   std::atomic<int> errors = 0;
 
   LodService::Done done() {
-    return [this](const Result<LodFilePtr>& result) { ++(result ? files : errors); };
+    return [this](const LodOutcome& outcome) { ++(outcome.file ? files : errors); };
   }
 };
 
@@ -122,11 +132,35 @@ TEST(LodService, RefusesWhatTheQueueHasNoPlaceFor) {
   HeldWorker held(service, job(opened, "faces=100"));
   service.get(job(opened, "faces=200"), answers.done());
   service.get(job(opened, "faces=300"), answers.done());
-  const auto refused = asked(service, job(opened, "faces=400"));
-  EXPECT_EQ(refused.error().code, ErrorCode::out_of_resources);
+  const LodOutcome refused = outcome_of(service, job(opened, "faces=400"));
+  EXPECT_EQ(refused.file.error().code, ErrorCode::out_of_resources);
+  EXPECT_EQ(refused.limit, LimitName::lod_queue);
   EXPECT_EQ(service.statistics().refused, 1u);
   service.get(job(opened, "faces=300"), answers.done());  // merged: takes no place
   EXPECT_EQ(answers.errors, 0);
+}
+
+TEST(LodService, GivesEachAddressItsPartOfTheQueue) {
+  const OpenedMesh opened(testing::closed_shape());
+  Answers answers;
+  LodService service({.per_address = 2});
+  const auto kept = asked(service, job(opened, "faces=500"));
+  HeldWorker held(service, job(opened, "faces=100"));
+  const char* greedy = "192.0.2.1";
+  service.get(job_of(greedy, opened, "faces=200"), answers.done());
+  service.get(job_of(greedy, opened, "faces=300"), answers.done());
+  const LodOutcome refused = outcome_of(service, job_of(greedy, opened, "faces=400"));
+  EXPECT_EQ(refused.file.error().code, ErrorCode::out_of_resources);
+  EXPECT_EQ(refused.limit, LimitName::lod_per_address);
+  EXPECT_EQ(service.statistics().refused, 1u);
+
+  service.get(job_of("192.0.2.2", opened, "faces=400"), answers.done());
+  service.get(job_of(greedy, opened, "faces=400"), answers.done());  // merged: takes no place
+  EXPECT_EQ(*asked(service, job_of(greedy, opened, "faces=500")), *kept);
+  held.release();
+  asked(service, job(opened, "faces=600")).value();  // behind all of them
+  EXPECT_TRUE(asked(service, job_of(greedy, opened, "faces=700")).ok());
+  EXPECT_EQ(answers.files, 4);
 }
 
 TEST(LodService, AnswersHitsWhileItsWorkersAreBusy) {
@@ -183,8 +217,8 @@ TEST(LodService, AnswersEveryRequestOfManyThreadsOnce) {
       for (int i = 0; i < 50; ++i) {
         const OpenedMesh& opened = (t + i) % 2 == 0 ? closed : open;
         service.get(job(opened, "faces=" + std::to_string(50 + 37 * (i % 7))),
-                    [&](const Result<LodFilePtr>& result) {
-                      EXPECT_TRUE(result.ok());
+                    [&](const LodOutcome& outcome) {
+                      EXPECT_TRUE(outcome.file.ok());
                       answered.count_down();  // beyond 200 is misuse of a latch
                     });
       }

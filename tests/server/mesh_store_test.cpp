@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <latch>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -173,6 +175,76 @@ TEST_F(MeshStoreTest, ServesAFileThatWasOnlyTouched) {
   open();
   write_in_place("a.pmesh", 0, "");
   EXPECT_NE(found("a"), nullptr);
+}
+
+TEST_F(MeshStoreTest, HasAGenerationForEachListOfMeshes) {
+  directory_.write("a.pmesh", first_.bytes);
+  open();
+  const std::uint64_t one = store_->generation();
+  EXPECT_EQ(store_->generation(), one);
+  directory_.write("b.pmesh", first_.bytes);
+  const std::uint64_t two = store_->generation();
+  EXPECT_GT(two, one);
+  replace("b.pmesh", second_.bytes);
+  const std::uint64_t three = store_->generation();
+  EXPECT_GT(three, two);
+  directory_.write("c.pmesh", as_bytes("no mesh"));
+  EXPECT_EQ(store_->generation(), three);
+  fs::remove(directory_ / "a.pmesh");
+  EXPECT_GT(store_->generation(), three);
+}
+
+/// Bytes that this process has read from files so far; nothing if the kernel does not tell.
+std::optional<std::uint64_t> bytes_read() {
+  std::ifstream io("/proc/self/io");
+  std::string name;
+  std::uint64_t value = 0;
+  if (io >> name >> value && name == "rchar:") return value;
+  return {};
+}
+
+TEST_F(MeshStoreTest, ReadsAFileWrittenInPlaceOnceForAllWhoAsk) {
+  const SampleFile large = make_sample({8'000'000, 8'000'000, 8'000'000, 8'000'000});
+  directory_.write("a.pmesh", large.bytes);
+  open();
+  write_in_place("a.pmesh", 0, "");
+  const auto before = bytes_read();
+  if (!before) GTEST_SKIP() << "no /proc/self/io";
+  std::latch begin(8);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t) {
+    threads.emplace_back([&] {
+      begin.arrive_and_wait();
+      for (auto mesh = store_->find("a"); !mesh || !*mesh; mesh = store_->find("a")) {
+        EXPECT_FALSE(mesh.ok()) << "not found";
+        std::this_thread::sleep_for(milliseconds(1));
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GE(*bytes_read() - *before, large.bytes.size());
+  EXPECT_LT(*bytes_read() - *before, large.bytes.size() * 3 / 2);
+}
+
+TEST_F(MeshStoreTest, GoesOnFailingUntilAReplacedFileCanBeOpened) {
+  if (!testing::DescriptorLimit::can_leave_none()) GTEST_SKIP() << "sanitizers need descriptors";
+  constexpr milliseconds kLook(50);
+  directory_.write("a.pmesh", first_.bytes);
+  store_ = MeshStore::open(directory_ / "", milliseconds(0), kLook).value();
+  const MeshPtr held = found("a");
+  fs::rename(directory_ / "a.pmesh", directory_ / "aside");
+  replace("a.pmesh", second_.bytes);
+  const testing::CapturedLog log;
+  {
+    const testing::DescriptorLimit limit(testing::DescriptorLimit::none_left());
+    std::this_thread::sleep_for(2 * kLook);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(error_of("a"), ErrorCode::out_of_resources);
+    EXPECT_EQ(found("a", held->hash()), held);
+    EXPECT_TRUE(listed().empty());
+    fs::rename(directory_ / "aside", directory_ / "a.pmesh");  // what stood there before
+    EXPECT_FALSE(store_->find("a").ok());
+  }
+  EXPECT_EQ(found("a")->hash(), first_.index.header.content_hash);
 }
 
 TEST_F(MeshStoreTest, FailsForAsLongAsAFileCannotBeOpened) {

@@ -1,9 +1,11 @@
 // What keeps a server in hand: places for addresses, trusted proxies, metrics, reloads, access.
 #include <filesystem>
+#include <map>
 #include <thread>
 
 #include <gtest/gtest.h>
 
+#include "tests/server/opened_mesh.h"
 #include "tests/server/running_server.h"
 #include "tests/server/sample_file.h"
 
@@ -133,6 +135,41 @@ TEST_F(OperationTest, RequestsOfAProxyCountForItsClients) {
   EXPECT_EQ(ask(same, "1.2.3.4, 203.0.113.9"), 429);
   EXPECT_EQ(ask(other, "203.0.113.10"), 200);
   EXPECT_EQ(ask(same, "203.0.113.11"), 200);  // refused requests do not end the proxy's connection
+}
+
+TEST_F(OperationTest, EachClientHasItsPartOfTheQueueOfLevels) {
+  const EncodedShape shape = testing::closed_shape();
+  const auto statuses = [&](const std::function<std::string(int)>& fields) {
+    serve([](ServerOptions& options) {
+      options.lod.per_address = 1;
+      options.trusted_proxies = {"127.0.0.1"};
+    });
+    running_->directory().write("mesh.pmesh", shape.file);
+    std::vector<std::unique_ptr<TestClient>> clients;
+    for (int i = 0; i < 20; ++i) clients.push_back(std::make_unique<TestClient>(address()));
+    for (int i = 0; i < 20; ++i) {
+      const std::string target = "/mesh/lod.ply?faces=" + std::to_string(500 + 100 * i);
+      clients[static_cast<std::size_t>(i)]->send(get_request(target, fields(i)));
+    }
+    std::map<int, int> counts;
+    for (const auto& client : clients) {
+      const HttpResponse response = read_response(*client);
+      ++counts[response.status];
+      EXPECT_EQ(response.field("Retry-After"), response.status == 503 ? "1" : "");
+    }
+    return counts;
+  };
+  const auto one_client = [](int) { return std::string("X-Forwarded-For: 203.0.113.9\r\n"); };
+  const auto many_clients = [](int i) {
+    return "X-Forwarded-For: 203.0.113." + std::to_string(i) + "\r\n";
+  };
+  std::map<int, int> counts = statuses(one_client);
+  EXPECT_GT(counts[200], 0);
+  EXPECT_GT(counts[503], 0);
+  EXPECT_EQ(counts[200] + counts[503], 20);
+  EXPECT_EQ(metric(R"(pmesh_limits_total{limit="lod_per_address"})"), std::to_string(counts[503]));
+  EXPECT_EQ(statuses(many_clients)[200], 20);
+  EXPECT_EQ(statuses([](int) { return std::string(); })[200], 20);  // the proxy's own
 }
 
 TEST_F(OperationTest, MetricsTellWhatHappened) {

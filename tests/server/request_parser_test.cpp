@@ -66,6 +66,59 @@ TEST_F(RequestParserTest, JoinsForwardedFor) {
   EXPECT_EQ(parser.forwarded_for(), "1.1.1.1,2.2.2.2, 3.3.3.3");
 }
 
+TEST_F(RequestParserTest, JoinsIfNoneMatch) {
+  RequestParser parser(limits_);
+  parser.feed(
+      "GET / HTTP/1.1\r\nHost: x\r\nIf-None-Match: \"a\", W/\"b\"\r\n"
+      "If-Range: \"d\"\r\nIF-NONE-MATCH: \"c\"\r\n\r\n");
+  EXPECT_EQ(parser.next(), Step::request);
+  EXPECT_EQ(parser.request().if_none_match, "\"a\", W/\"b\",\"c\"");
+}
+
+TEST_F(RequestParserTest, TakesARepeatedRangeForNone) {
+  const auto range_of = [&](const std::string& fields) {
+    RequestParser parser(limits_);
+    parser.feed("GET / HTTP/1.1\r\nHost: x\r\n" + fields + "\r\n");
+    EXPECT_EQ(parser.next(), Step::request) << fields;
+    return std::string(parser.request().range);
+  };
+  const std::string range = "Range: bytes=0-1\r\n", if_range = "If-Range: \"a\"\r\n";
+  EXPECT_EQ(range_of(range), "bytes=0-1");
+  EXPECT_EQ(range_of(range + if_range), "bytes=0-1");
+  EXPECT_EQ(range_of(range + range), "");
+  EXPECT_EQ(range_of(range + "range: bytes=5-6\r\n"), "");
+  EXPECT_EQ(range_of(if_range + range + if_range), "");
+}
+
+TEST_F(RequestParserTest, KnowsWhatCanBeAHost) {
+  const auto refusal_of_host = [&](const std::string& host) {
+    return refusal_of("GET / HTTP/1.1\r\nHost:" + host + "\r\n\r\n");
+  };
+  for (const char* host : {"", " ", " example.org", " example.org:8080", " example.org:", " :80",
+                           " 127.0.0.1:1", " [::1]", " [2001:db8::7]:443", " [::ffff:192.0.2.1]",
+                           " a_b.c-d~e", " sub!$&'()*+,;=", " caf%C3%A9"}) {
+    EXPECT_EQ(refusal_of_host(host), 0) << host;
+  }
+  for (const char* host : {" a b",     " a/b",
+                           " a?b",     " a#b",
+                           " a@b",     " user:pw@host",
+                           " a\\b",    " a:b",
+                           " a:80:80", " ::1",
+                           " a:8x",    " a:-1",
+                           " \"a\"",   " <a>",
+                           " a|b",     " a^b",
+                           " {a}",     " a\xC3\xA9",
+                           " [::1",    " []",
+                           " []:80",   " [::1]80",
+                           " [::1]:x", " [::1]]",
+                           " [[::1]]", " [fe80::1%25eth0]",
+                           " a[::1]",  " ::1]",
+                           " a\tb"}) {
+    EXPECT_EQ(refusal_of_host(host), 400) << host;
+  }
+  EXPECT_EQ(refusal_of("GET / HTTP/1.0\r\nHost: a/b\r\n\r\n"), 400);
+}
+
 TEST_F(RequestParserTest, KnowsAWebSocketsHandshake) {
   const auto upgrades = [&](const std::string& version, const std::string& key) {
     RequestParser parser(limits_);
