@@ -38,10 +38,10 @@ class RequestParser {
   bool empty() const { return held_.size() == head_bytes_; }
 
   /// Both are valid until the next call of feed() or next(). Precondition: next() gave a request.
-  HttpRequest request() const;
+  const HttpRequest& request() const { return request_; }
   const Message& message() const { return parser_->get(); }
   /// All X-Forwarded-For fields as one list. Precondition: as request().
-  std::string forwarded_for() const { return list_of("X-Forwarded-For"); }
+  std::string forwarded_for() const;
   bool keep_alive() const { return message().keep_alive(); }
 
   /// The status; 0 if nothing was refused.
@@ -52,14 +52,17 @@ class RequestParser {
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
+  struct FieldCounts;
+
   void drop_last();
   Step refuse(int status, std::optional<LimitName> limit = {});
   Step parse_head(std::string_view head);
   Step check_message();
-  std::string list_of(std::string_view name) const;
+  void take_field(boost::beast::http::field name, std::string_view value, FieldCounts& counts);
 
   const SessionLimits limits_;
   std::optional<Parser> parser_;
+  HttpRequest request_;
   std::string held_;            // the last request's head, and what came after it
   std::size_t head_bytes_ = 0;  // of the last request given
   std::size_t searched_ = 0;    // no head ends before this
@@ -67,11 +70,5 @@ class RequestParser {
   int refusal_ = 0;
   std::optional<LimitName> limit_;
 };
-
-/// 0 if `head`, up to and with its empty line, has the strict form of RFC 9112: lines that end in
-/// CR LF, a request line of three parts and one space between them, field names that are tokens
-/// right before their colon, no folded lines, no control characters. Else the status to refuse it
-/// with.
-int check_head(std::string_view head);
 
 }  // namespace pmesh
